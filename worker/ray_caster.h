@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+// The ray caster: a scene committed to tables, and the source of samples for one view of it.
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "common/scene/scene.h"
+#include "common/volume/volume.h"
+#include "worker/sample_source.h"
+
+namespace goldthread {
+
+/// Everything that depends on the scene and the volume but not on the camera: features, tables,
+/// which cells are empty. Immutable once made.
+class CommittedScene;
+
+/// `scene` must be resolved for `volume`.
+std::shared_ptr<const CommittedScene> commit_scene(const Scene& scene,
+                                                   std::shared_ptr<const Volume> volume);
+
+/// The names of the features that the scene needs ("dvr", "shading", …), and of the kernel chosen
+/// for them ("dvr+shading uint8 AVX3").
+std::vector<std::string> feature_names(const CommittedScene& scene);
+std::string kernel_name(const CommittedScene& scene);
+
+/// The ray caster for one view. Cheap: commit once, look often.
+std::shared_ptr<const SampleSource> make_ray_caster(std::shared_ptr<const CommittedScene> scene,
+                                                    const Camera& camera, ImageSize size);
+
+}  // namespace goldthread
