@@ -1,0 +1,297 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+// The whole contract between roles: who may say what to whom. Each message is a value with one list
+// of its fields, from which encode and decode are derived (wire.h). One variant per direction; roles
+// visit it without a default branch, so that a new message breaks the build until it is handled.
+// Messages of work carry the epoch of their view; whoever sees a stale one drops it.
+
+#include <cstdint>
+#include <string>
+#include <tuple>
+#include <variant>
+#include <vector>
+
+#include "common/base/result.h"
+#include "common/base/types.h"
+#include "common/protocol/buffer.h"
+#include "common/protocol/codec.h"
+#include "common/scene/scene.h"
+#include "common/tile/tile_grid.h"
+#include "common/volume/volume.h"
+
+namespace goldthread {
+
+constexpr std::uint32_t kProtocolVersion = 1;
+
+enum class Role : std::uint8_t { kMaster, kCompositor, kWorker };
+
+template <> struct LastEnumerator<Role> { static constexpr auto value = Role::kWorker; };
+template <> struct LastEnumerator<VoxelType> { static constexpr auto value = VoxelType::kFloat32; };
+template <> struct LastEnumerator<ColorSpace> { static constexpr auto value = ColorSpace::kLinear; };
+template <> struct LastEnumerator<ExitStatus> {
+  static constexpr auto value = ExitStatus::kClusterFailed;
+};
+
+/// Declares a message's name and fields; both are part of the wire format's documentation.
+#define GOLDTHREAD_MESSAGE(Type, ...)            \
+  static constexpr const char* kName = #Type;    \
+  static constexpr auto fields() { return std::tuple{__VA_ARGS__}; }
+
+// ---- any rank to the master -----------------------------------------------------------------------
+
+/// The first message of every rank. A protocol or build that differs ends the job, naming both.
+struct Hello {
+  std::uint32_t protocol = kProtocolVersion;
+  std::string build;
+  Role role = Role::kWorker;
+  std::string host;  ///< for people
+  std::string node;  ///< equal for ranks that can share memory
+  std::uint32_t threads = 1;
+  GOLDTHREAD_MESSAGE(Hello, &Hello::protocol, &Hello::build, &Hello::role, &Hello::host,
+                     &Hello::node, &Hello::threads)
+};
+
+/// Memory of a process that others of its node may map: /proc/PID/fd/FD, `bytes` long.
+struct SharedBlock {
+  std::int32_t pid = 0;
+  std::int32_t descriptor = -1;
+  std::uint64_t bytes = 0;
+  static constexpr auto fields() {
+    return std::tuple{&SharedBlock::pid, &SharedBlock::descriptor, &SharedBlock::bytes};
+  }
+};
+
+/// A worker is reading the volume: `fraction` of it is done, 0 … 1.
+struct LoadProgress {
+  float fraction = 0;
+  GOLDTHREAD_MESSAGE(LoadProgress, &LoadProgress::fraction)
+};
+/// A node's reader has the volume in memory that its neighbours may map.
+struct VolumeLoaded {
+  VolumeInfo info;
+  SharedBlock block;
+  GOLDTHREAD_MESSAGE(VolumeLoaded, &VolumeLoaded::info, &VolumeLoaded::block)
+};
+/// A worker has mapped its node's volume.
+struct VolumeMapped {
+  std::uint8_t unused = 0;
+  GOLDTHREAD_MESSAGE(VolumeMapped, &VolumeMapped::unused)
+};
+/// A worker is ready to cast rays through this revision of the scene.
+struct SceneCommitted {
+  std::uint32_t revision = 0;
+  std::vector<std::string> features;
+  std::string kernel;
+  GOLDTHREAD_MESSAGE(SceneCommitted, &SceneCommitted::revision, &SceneCommitted::features,
+                     &SceneCommitted::kernel)
+};
+/// A worker has cast a quantum and sent its samples.
+struct TileDone {
+  Epoch epoch;
+  TileId tile;
+  Level to;
+  std::uint32_t cost_us = 0;  ///< time that a thread spent on it
+  std::uint64_t rays = 0;
+  std::uint64_t samples = 0;
+  GOLDTHREAD_MESSAGE(TileDone, &TileDone::epoch, &TileDone::tile, &TileDone::to,
+                     &TileDone::cost_us, &TileDone::rays, &TileDone::samples)
+};
+/// Each tile of a compositor's band is at `level` or finer.
+struct BandReady {
+  Epoch epoch;
+  Level level;
+  GOLDTHREAD_MESSAGE(BandReady, &BandReady::epoch, &BandReady::level)
+};
+/// A finished band over its background: float RGBA rows from the top, answering CollectBand.
+struct BandPicture {
+  Epoch epoch;
+  PixelRect rect;
+  Buffer pixels;
+  GOLDTHREAD_MESSAGE(BandPicture, &BandPicture::epoch, &BandPicture::rect, &BandPicture::pixels)
+};
+/// What a rank has sent since the start, by kind of message, and how long it computed.
+struct MessageCount {
+  std::string kind;
+  std::uint64_t messages = 0;
+  std::uint64_t bytes = 0;
+  static constexpr auto fields() {
+    return std::tuple{&MessageCount::kind, &MessageCount::messages, &MessageCount::bytes};
+  }
+};
+struct Counters {
+  std::vector<MessageCount> sent;
+  double busy_seconds = 0;
+  GOLDTHREAD_MESSAGE(Counters, &Counters::sent, &Counters::busy_seconds)
+};
+/// A rank cannot go on: the job ends with this line and status.
+struct RankFailed {
+  Failure failure;
+  GOLDTHREAD_MESSAGE(RankFailed, &RankFailed::failure)
+};
+/// The page is served at this port.
+struct GatewayOpened {
+  std::uint16_t port = 0;
+  GOLDTHREAD_MESSAGE(GatewayOpened, &GatewayOpened::port)
+};
+/// Input of the driving page; `serial` counts that page's inputs.
+struct ViewerCamera {
+  std::uint32_t viewer = 0;
+  std::uint32_t serial = 0;
+  Camera camera;
+  GOLDTHREAD_MESSAGE(ViewerCamera, &ViewerCamera::viewer, &ViewerCamera::serial,
+                     &ViewerCamera::camera)
+};
+struct ViewerEdit {
+  std::uint32_t viewer = 0;
+  std::uint32_t serial = 0;
+  std::string edit_json;
+  GOLDTHREAD_MESSAGE(ViewerEdit, &ViewerEdit::viewer, &ViewerEdit::serial, &ViewerEdit::edit_json)
+};
+struct ViewerSize {
+  std::uint32_t viewer = 0;
+  std::uint32_t serial = 0;
+  ImageSize size;
+  GOLDTHREAD_MESSAGE(ViewerSize, &ViewerSize::viewer, &ViewerSize::serial, &ViewerSize::size)
+};
+/// How many pages look on, and whether one of them could take a picture at once.
+struct Audience {
+  std::uint32_t viewers = 0;
+  bool ready = false;
+  GOLDTHREAD_MESSAGE(Audience, &Audience::viewers, &Audience::ready)
+};
+
+using ToMaster =
+    std::variant<Hello, LoadProgress, VolumeLoaded, VolumeMapped, SceneCommitted, TileDone, BandReady,
+                 BandPicture, Counters, RankFailed, GatewayOpened, ViewerCamera, ViewerEdit,
+                 ViewerSize, Audience>;
+
+// ---- the master to a worker, or to a compositor ---------------------------------------------------
+
+/// How the session computes; sent before anything else.
+struct BeginSession {
+  std::uint32_t threads = 1;   ///< compute threads of this rank
+  bool interactive = false;    ///< compute only when nothing else wants the core
+  std::uint32_t compositors = 1;
+  GOLDTHREAD_MESSAGE(BeginSession, &BeginSession::threads, &BeginSession::interactive,
+                     &BeginSession::compositors)
+};
+/// Read the volume for all ranks of this node.
+struct LoadVolume {
+  std::string file;
+  std::int32_t component = -1;  ///< −1: the file has one, or the first
+  GOLDTHREAD_MESSAGE(LoadVolume, &LoadVolume::file, &LoadVolume::component)
+};
+/// Use the volume that a neighbour has read.
+struct MapVolume {
+  VolumeInfo info;
+  SharedBlock block;
+  GOLDTHREAD_MESSAGE(MapVolume, &MapVolume::info, &MapVolume::block)
+};
+/// The resolved scene, as a scene file without defaults left open.
+struct CommitScene {
+  std::uint32_t revision = 0;
+  std::string scene_json;
+  GOLDTHREAD_MESSAGE(CommitScene, &CommitScene::revision, &CommitScene::scene_json)
+};
+/// A new view: everything of older epochs is dropped.
+struct BeginView {
+  Epoch epoch;
+  std::uint32_t scene_revision = 0;
+  Camera camera;
+  TileGrid grid;
+  glm::dvec3 background{0};
+  ColorSpace color_space = ColorSpace::kDisplay;
+  GOLDTHREAD_MESSAGE(BeginView, &BeginView::epoch, &BeginView::scene_revision, &BeginView::camera,
+                     &BeginView::grid, &BeginView::background, &BeginView::color_space)
+};
+/// One quantum of work: take a tile from level `from` (kNoLevel: nothing) to `to`.
+struct RenderTile {
+  Epoch epoch;
+  TileId tile;
+  Level from;
+  Level to;
+  GOLDTHREAD_MESSAGE(RenderTile, &RenderTile::epoch, &RenderTile::tile, &RenderTile::from,
+                     &RenderTile::to)
+};
+/// Asks for Counters.
+struct ReportCounters {
+  std::uint8_t unused = 0;
+  GOLDTHREAD_MESSAGE(ReportCounters, &ReportCounters::unused)
+};
+/// The job is over.
+struct Stop {
+  std::uint8_t unused = 0;
+  GOLDTHREAD_MESSAGE(Stop, &Stop::unused)
+};
+
+using ToWorker = std::variant<BeginSession, LoadVolume, MapVolume, CommitScene, BeginView, RenderTile,
+                              ReportCounters, Stop>;
+
+// ---- to a compositor ------------------------------------------------------------------------------
+
+/// A worker's samples of one quantum: float RGBA, in the order of new_samples().
+struct Samples {
+  Epoch epoch;
+  TileId tile;
+  Level from;
+  Level to;
+  Buffer colors;
+  GOLDTHREAD_MESSAGE(Samples, &Samples::epoch, &Samples::tile, &Samples::from, &Samples::to,
+                     &Samples::colors)
+};
+/// Encode the band as it is and send it to the gateway as part of `picture`.
+struct Present {
+  Epoch epoch;
+  std::uint32_t picture = 0;
+  std::uint32_t viewer = 0;
+  std::uint32_t serial = 0;
+  bool lossless = false;
+  bool final = false;
+  GOLDTHREAD_MESSAGE(Present, &Present::epoch, &Present::picture, &Present::viewer, &Present::serial,
+                     &Present::lossless, &Present::final)
+};
+/// Send the band's finished pixels to the master.
+struct CollectBand {
+  Epoch epoch;
+  GOLDTHREAD_MESSAGE(CollectBand, &CollectBand::epoch)
+};
+/// A compositor's encoded band, for the gateway to put together with the others'.
+struct EncodedBand {
+  Present present;
+  ImageSize image;
+  PixelRect rect;
+  std::uint8_t encoding = 0;  ///< 1 JPEG, 2 zstd of RGB rows
+  std::uint8_t spacing_px = 1;
+  Buffer payload;
+  GOLDTHREAD_MESSAGE(EncodedBand, &EncodedBand::present, &EncodedBand::image, &EncodedBand::rect,
+                     &EncodedBand::encoding, &EncodedBand::spacing_px, &EncodedBand::payload)
+};
+/// Serve the page (to the first compositor).
+struct OpenGateway {
+  std::string host;
+  std::uint16_t port = 0;
+  std::string token;
+  GOLDTHREAD_MESSAGE(OpenGateway, &OpenGateway::host, &OpenGateway::port, &OpenGateway::token)
+};
+/// JSON for the pages: what each newcomer gets first, for all, or for one.
+struct Welcome {
+  std::string json;
+  GOLDTHREAD_MESSAGE(Welcome, &Welcome::json)
+};
+struct Broadcast {
+  std::string json;
+  GOLDTHREAD_MESSAGE(Broadcast, &Broadcast::json)
+};
+struct Reply {
+  std::uint32_t viewer = 0;
+  std::string json;
+  GOLDTHREAD_MESSAGE(Reply, &Reply::viewer, &Reply::json)
+};
+
+using ToCompositor =
+    std::variant<BeginSession, BeginView, Samples, Present, CollectBand, EncodedBand, OpenGateway,
+                 Welcome, Broadcast, Reply, ReportCounters, Stop>;
+
+#undef GOLDTHREAD_MESSAGE
+
+}  // namespace goldthread

@@ -1,0 +1,195 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "common/transport/mpi_transport.h"
+
+#include <mpi.h>
+#include <sys/prctl.h>
+
+#include <condition_variable>
+#include <cstdlib>
+#include <deque>
+#include <limits>
+#include <list>
+#include <mutex>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "common/base/result.h"
+
+namespace goldthread {
+namespace {
+
+constexpr int kTag = 1;
+/// The polling interval grows from the first to the second while nothing comes: short enough for
+/// interaction, long enough to leave the cores to the ranks that compute.
+constexpr std::chrono::microseconds kShortestSleep{20};
+constexpr std::chrono::microseconds kLongestSleep{1000};
+/// A sleep that misses its end by the kernel's default 50 µs would double the latency.
+constexpr unsigned long kTimerSlackNs = 1000;
+
+void check(int code, const char* call) {
+  if (code == MPI_SUCCESS) return;
+  char text[MPI_MAX_ERROR_STRING];
+  int length = 0;
+  MPI_Error_string(code, text, &length);
+  throw FatalError({.where = call,
+                    .what = std::string(text, static_cast<std::size_t>(length)),
+                    .mend = "check the MPI installation and the network between the hosts",
+                    .status = ExitStatus::kClusterFailed});
+}
+
+}  // namespace
+
+class MpiTransport::Impl {
+ public:
+  Impl() {
+    int provided = 0;
+    check(MPI_Init_thread(nullptr, nullptr, MPI_THREAD_FUNNELED, &provided), "MPI_Init_thread");
+    MPI_Comm_set_errhandler(MPI_COMM_WORLD, MPI_ERRORS_RETURN);
+    check(MPI_Comm_rank(MPI_COMM_WORLD, &rank_), "MPI_Comm_rank");
+    check(MPI_Comm_size(MPI_COMM_WORLD, &size_), "MPI_Comm_size");
+    receiving_.resize(static_cast<std::size_t>(size_));
+    prctl(PR_SET_TIMERSLACK, kTimerSlackNs);
+  }
+  ~Impl() { MPI_Finalize(); }
+
+  int rank() const { return rank_; }
+  int size() const { return size_; }
+
+  void send(Rank to, Buffer message) {
+    if (to.value == rank_) {
+      to_self_.push_back({Rank{rank_}, std::move(message)});
+      return;
+    }
+    if (message.size() > static_cast<std::size_t>(std::numeric_limits<int>::max())) {
+      throw FatalError({"MPI_Isend", "a message of 2 GiB or more", "use more compositors",
+                        ExitStatus::kClusterFailed});
+    }
+    Transfer& transfer = sending_.emplace_back(Transfer{std::move(message), MPI_REQUEST_NULL});
+    check(MPI_Isend(transfer.message.data(), static_cast<int>(transfer.message.size()), MPI_BYTE,
+                    to.value, kTag, MPI_COMM_WORLD, &transfer.request),
+          "MPI_Isend");
+  }
+
+  std::optional<Envelope> receive() {
+    finish_sends();
+    if (!to_self_.empty()) {
+      Envelope envelope = std::move(to_self_.front());
+      to_self_.pop_front();
+      return envelope;
+    }
+    // MPI_Improbe makes progress and returns without looking again: ask twice.
+    if (!accept_one()) accept_one();
+    for (std::size_t i = 0; i < receiving_.size(); ++i) {
+      const std::size_t source = (next_source_ + i) % receiving_.size();
+      if (auto envelope = finish_receive(source)) {
+        next_source_ = (source + 1) % receiving_.size();
+        sleep_ = kShortestSleep;
+        return envelope;
+      }
+    }
+    return {};
+  }
+
+  void wait(std::chrono::microseconds at_most) {
+    if (!to_self_.empty()) return;
+    // While a transfer is under way only polling moves it on.
+    const bool busy = !sending_.empty() || open_receives_ > 0;
+    const auto length = std::min(at_most, busy ? kShortestSleep : sleep_);
+    std::unique_lock lock(mutex_);
+    if (woken_changed_.wait_for(lock, length, [&] { return woken_; })) sleep_ = kShortestSleep;
+    else sleep_ = std::min(sleep_ * 5 / 4, kLongestSleep);
+    woken_ = false;
+  }
+
+  void wake() {
+    {
+      const std::lock_guard lock(mutex_);
+      woken_ = true;
+    }
+    woken_changed_.notify_one();
+  }
+
+  void flush(std::chrono::milliseconds at_most) {
+    const auto end = std::chrono::steady_clock::now() + at_most;
+    while (!sending_.empty() && std::chrono::steady_clock::now() < end) {
+      finish_sends();
+      if (!sending_.empty()) std::this_thread::sleep_for(kShortestSleep);
+    }
+  }
+
+ private:
+  struct Transfer {
+    Buffer message;
+    MPI_Request request;
+  };
+
+  void finish_sends() {
+    for (auto transfer = sending_.begin(); transfer != sending_.end();) {
+      int done = 0;
+      check(MPI_Test(&transfer->request, &done, MPI_STATUS_IGNORE), "MPI_Test");
+      transfer = done != 0 ? sending_.erase(transfer) : std::next(transfer);
+    }
+  }
+
+  /// Starts to receive a message that is waiting; false if there is none.
+  bool accept_one() {
+    int found = 0;
+    MPI_Message handle = MPI_MESSAGE_NULL;
+    MPI_Status status;
+    check(MPI_Improbe(MPI_ANY_SOURCE, kTag, MPI_COMM_WORLD, &found, &handle, &status),
+          "MPI_Improbe");
+    if (found == 0) return false;
+    int count = 0;
+    check(MPI_Get_count(&status, MPI_BYTE, &count), "MPI_Get_count");
+    auto& queue = receiving_[static_cast<std::size_t>(status.MPI_SOURCE)];
+    Transfer& transfer = queue.emplace_back(
+        Transfer{Buffer::for_receiving(static_cast<std::size_t>(count)), MPI_REQUEST_NULL});
+    ++open_receives_;
+    check(MPI_Imrecv(transfer.message.data(), count, MPI_BYTE, &handle, &transfer.request),
+          "MPI_Imrecv");
+    return true;
+  }
+
+  /// The oldest message of a rank, once all of it is here: later ones wait, so that order is kept.
+  std::optional<Envelope> finish_receive(std::size_t source) {
+    auto& queue = receiving_[source];
+    if (queue.empty()) return {};
+    int done = 0;
+    check(MPI_Test(&queue.front().request, &done, MPI_STATUS_IGNORE), "MPI_Test");
+    if (done == 0) return {};
+    Envelope envelope{Rank{static_cast<int>(source)}, std::move(queue.front().message)};
+    queue.pop_front();
+    --open_receives_;
+    return envelope;
+  }
+
+  int rank_ = 0;
+  int size_ = 1;
+  std::list<Transfer> sending_;
+  std::vector<std::deque<Transfer>> receiving_;  // by source
+  int open_receives_ = 0;
+  std::size_t next_source_ = 0;
+  std::deque<Envelope> to_self_;
+  std::chrono::microseconds sleep_ = kShortestSleep;
+
+  std::mutex mutex_;
+  std::condition_variable woken_changed_;
+  bool woken_ = false;
+};
+
+bool started_by_mpi() {
+  return std::getenv("OMPI_COMM_WORLD_SIZE") != nullptr || std::getenv("PMIX_RANK") != nullptr;
+}
+
+MpiTransport::MpiTransport() : impl_(std::make_unique<Impl>()) {}
+MpiTransport::~MpiTransport() = default;
+Rank MpiTransport::rank() const { return {impl_->rank()}; }
+int MpiTransport::size() const { return impl_->size(); }
+void MpiTransport::send(Rank to, Buffer message) { impl_->send(to, std::move(message)); }
+std::optional<Envelope> MpiTransport::receive() { return impl_->receive(); }
+void MpiTransport::wait(std::chrono::microseconds at_most) { impl_->wait(at_most); }
+void MpiTransport::wake() { impl_->wake(); }
+void MpiTransport::flush(std::chrono::milliseconds at_most) { impl_->flush(at_most); }
+
+}  // namespace goldthread

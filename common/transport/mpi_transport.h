@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+// The cluster over MPI. The only source that includes mpi.h is this header's .cpp. A rank polls with
+// a back-off instead of blocking, because a blocked receive of Open MPI spins and takes the core from
+// the ranks that compute.
+
+#include <memory>
+
+#include "common/transport/transport.h"
+
+namespace goldthread {
+
+/// Whether this process was started by mpirun or srun, from the environment they set.
+bool started_by_mpi();
+
+/// Owns MPI from construction to destruction; make one per process, use it from one thread.
+class MpiTransport final : public Transport {
+ public:
+  /// Throws FatalError if MPI cannot be initialised.
+  MpiTransport();
+  ~MpiTransport() override;
+
+  Rank rank() const override;
+  int size() const override;
+  void send(Rank to, Buffer message) override;
+  std::optional<Envelope> receive() override;
+  void wait(std::chrono::microseconds at_most) override;
+  void wake() override;
+  void flush(std::chrono::milliseconds at_most) override;
+
+ private:
+  class Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace goldthread

@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+// Typed messages over a transport: encodes, counts what was sent by kind, and decodes what comes.
+
+#include <map>
+#include <string>
+
+#include "common/protocol/wire.h"
+#include "common/transport/transport.h"
+
+namespace goldthread {
+
+/// A rank's post office, and its place in the cluster.
+class Post {
+ public:
+  explicit Post(Transport& transport) : transport_(transport) {}
+
+  Rank rank() const { return transport_.rank(); }
+  int size() const { return transport_.size(); }
+
+  void to_master(ToMaster message) { send(Rank{0}, std::move(message)); }
+  void to_worker(Rank to, ToWorker message) { send(to, std::move(message)); }
+  void to_compositor(Rank to, ToCompositor message) { send(to, std::move(message)); }
+
+  /// The next message, decoded. Bytes that are not a message of `Inbox` end the job: a peer of this
+  /// cluster is broken.
+  template <class Inbox>
+  std::optional<std::pair<Rank, Inbox>> receive() {
+    auto envelope = transport_.receive();
+    if (!envelope) return {};
+    auto message = decode<Inbox>(std::move(envelope->message));
+    if (!message) {
+      throw FatalError({.where = "rank " + std::to_string(envelope->from.value),
+                        .what = "sent bytes that are no message of protocol " +
+                                std::to_string(kProtocolVersion),
+                        .mend = "start the same build of goldthread on every host",
+                        .status = ExitStatus::kClusterFailed});
+    }
+    return std::pair{envelope->from, std::move(*message)};
+  }
+  void wait(std::chrono::microseconds at_most) { transport_.wait(at_most); }
+  void wake() { transport_.wake(); }
+  void flush(std::chrono::milliseconds at_most) { transport_.flush(at_most); }
+
+  std::vector<MessageCount> sent() const {
+    std::vector<MessageCount> counts;
+    for (const auto& [kind, count] : sent_) counts.push_back(count);
+    return counts;
+  }
+
+ private:
+  template <class Direction>
+  void send(Rank to, Direction message) {
+    const char* kind = message_name(message);
+    Buffer bytes = encode(std::move(message));
+    MessageCount& count = sent_[kind];
+    count.kind = kind;
+    count.messages += 1;
+    count.bytes += bytes.size();
+    transport_.send(to, std::move(bytes));
+  }
+
+  Transport& transport_;
+  std::map<std::string, MessageCount> sent_;
+};
+
+}  // namespace goldthread
