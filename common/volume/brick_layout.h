@@ -12,8 +12,8 @@ namespace goldthread {
 struct BrickLayout {
   static constexpr int kEdgeX = 32, kEdgeY = 8, kEdgeZ = 8;
   static constexpr int kShiftX = 5, kShiftY = 3, kShiftZ = 3;
-  static constexpr int kLeft = 1;    ///< neighbours kept in front of a row
-  static constexpr int kRow = 36;    ///< elements of a row: 1 + 32 + 2, and 1 unused
+  static constexpr int kLeft = 1;  ///< neighbours kept in front of a row
+  static constexpr int kRow = 36;  ///< elements of a row: 1 + 32 + 2, and 1 unused
   static constexpr int kSlice = kRow * kEdgeY;
   static constexpr int kBrick = kSlice * kEdgeZ;  ///< elements of a brick
 

@@ -23,15 +23,19 @@ enum class VoxelType : std::uint8_t { kUInt8, kInt8, kUInt16, kInt16, kFloat32 }
 constexpr std::size_t bytes_per_voxel(VoxelType type) {
   switch (type) {
     case VoxelType::kUInt8:
-    case VoxelType::kInt8: return 1;
+    case VoxelType::kInt8:
+      return 1;
     case VoxelType::kUInt16:
-    case VoxelType::kInt16: return 2;
-    case VoxelType::kFloat32: return 4;
+    case VoxelType::kInt16:
+      return 2;
+    case VoxelType::kFloat32:
+      return 4;
   }
   return 0;
 }
 
-/// Where the voxels lie: centre of voxel (i,j,k) = origin + direction · (spacing ∘ (i,j,k)), LPS mm.
+/// Where the voxels lie: centre of voxel (i,j,k) = origin + direction · (spacing ∘ (i,j,k)), LPS
+/// mm.
 struct VolumeGeometry {
   glm::ivec3 size{0, 0, 0};
   glm::dvec3 spacing_mm{1, 1, 1};
@@ -54,28 +58,31 @@ struct VolumeGeometry {
 /// What is known of a volume without holding its voxels.
 struct VolumeInfo {
   std::string file;
-  std::string format;         ///< "NIfTI", "NRRD", "OpenVDB", "raw", …
-  std::string stored_type;    ///< as the file has it, "uint8", "double", …
+  std::string format;                  ///< "NIfTI", "NRRD", "OpenVDB", "raw", …
+  std::string stored_type;             ///< as the file has it, "uint8", "double", …
   VoxelType type = VoxelType::kUInt8;  ///< as it is held in memory
-  int components = 1;         ///< in the file
-  int component = 0;          ///< the one that is held
+  int components = 1;                  ///< in the file
+  int component = 0;                   ///< the one that is held
   VolumeGeometry geometry;
-  double minimum = 0;         ///< of the finite voxels; 0 if there is none
+  double minimum = 0;  ///< of the finite voxels; 0 if there is none
   double maximum = 0;
   std::uint64_t not_finite = 0;          ///< voxels that are NaN or infinite; they count as empty
   std::vector<std::uint64_t> histogram;  ///< 256 equal bins over [minimum, maximum]
   std::vector<std::string> notes;        ///< what the user should know ("double kept as float32")
   static constexpr auto fields() {
-    return std::tuple{&VolumeInfo::file,       &VolumeInfo::format,    &VolumeInfo::stored_type,
+    return std::tuple{&VolumeInfo::file,       &VolumeInfo::format,     &VolumeInfo::stored_type,
                       &VolumeInfo::type,       &VolumeInfo::components, &VolumeInfo::component,
-                      &VolumeInfo::geometry,   &VolumeInfo::minimum,   &VolumeInfo::maximum,
-                      &VolumeInfo::not_finite, &VolumeInfo::histogram, &VolumeInfo::notes};
+                      &VolumeInfo::geometry,   &VolumeInfo::minimum,    &VolumeInfo::maximum,
+                      &VolumeInfo::not_finite, &VolumeInfo::histogram,  &VolumeInfo::notes};
   }
 };
 
 /// Least and greatest stored value of the voxels that a trilinear sample inside a cell can touch
 /// (8 cells' voxels and one more on the upper side of each axis), NaN and Inf left out.
-/// An empty cell (no finite voxel) has minimum > maximum.
+/// An empty cell (no finite voxel) has minimum > maximum. No flag says that a cell also holds
+/// voxels that are not finite: a sample that touches one is empty, and any other lies inside the
+/// range, so that what the range proves about a cell (nothing to see, no crossing) holds with them
+/// as well.
 struct CellRange {
   float minimum;
   float maximum;
@@ -84,7 +91,9 @@ struct CellRange {
 /// Voxels in bricks and the ranges of their cells, in one block of memory that starts with the
 /// voxels: [voxels, kVoxelTailBytes of zeros, padding to 64][CellRange × cell count].
 /// int8 and int16 are stored with the sign bit flipped, so that kernels see unsigned only:
-/// value = stored + value_bias().
+/// value = stored + value_bias(). Float voxels that are not finite are stored as a quiet NaN, so
+/// that kernels test for one thing only. Beyond the volume's border its outermost voxels are
+/// repeated.
 class Volume {
  public:
   Volume() = default;
@@ -92,13 +101,16 @@ class Volume {
   Volume(VolumeInfo info, std::shared_ptr<const std::byte> memory);
 
   static std::size_t block_bytes(const VolumeGeometry& geometry, VoxelType type);
+  /// Where the CellRanges begin in the block, and how many of them lie along each axis.
+  static std::size_t cells_offset(const VolumeGeometry& geometry, VoxelType type);
+  static glm::ivec3 cell_counts(const VolumeGeometry& geometry);
 
   const VolumeInfo& info() const { return info_; }
   const BrickLayout& layout() const { return layout_; }
   const std::byte* voxels() const { return memory_.get(); }
   /// Cells in x-fastest order, cell_counts() of them; cell c covers voxel indices [8c, 8c+8].
   std::span<const CellRange> cells() const;
-  glm::ivec3 cell_counts() const;
+  glm::ivec3 cell_counts() const { return cell_counts(info_.geometry); }
   /// What to add to a stored number to get the data value: −128, −32768 or 0.
   double value_bias() const;
   /// The data value of one voxel; indices must lie inside. Slow: for tests and tools.
@@ -112,5 +124,9 @@ class Volume {
 
 constexpr int kCellEdge = 8;
 constexpr std::size_t kVoxelTailBytes = 64;
+constexpr std::size_t kBlockAlignment = 64;
+
+/// "uint8", "int16", "float32" …
+const char* name_of(VoxelType type);
 
 }  // namespace goldthread

@@ -1,0 +1,109 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "common/volume/volume.h"
+
+#include <cstring>
+#include <glm/gtc/matrix_inverse.hpp>
+
+namespace goldthread {
+namespace {
+
+template <class T>
+double element(const std::byte* voxels, std::int64_t index) {
+  T value;
+  std::memcpy(&value, voxels + index * std::int64_t(sizeof(T)), sizeof(T));
+  return double(value);
+}
+
+std::size_t aligned(std::size_t bytes) {
+  return (bytes + kBlockAlignment - 1) / kBlockAlignment * kBlockAlignment;
+}
+
+}  // namespace
+
+glm::dmat4 VolumeGeometry::world_from_index() const {
+  glm::dmat4 map(1.0);
+  for (int axis = 0; axis < 3; ++axis)
+    map[axis] = glm::dvec4(direction[axis] * spacing_mm[axis], 0.0);
+  map[3] = glm::dvec4(origin_mm, 1.0);
+  return map;
+}
+
+glm::dmat4 VolumeGeometry::index_from_world() const {
+  // Not the inverse of the 4×4 matrix: a far origin would cost digits of the linear part.
+  const glm::dmat3 linear = glm::inverse(glm::dmat3(world_from_index()));
+  glm::dmat4 map(linear);
+  map[3] = glm::dvec4(-(linear * origin_mm), 1.0);
+  return map;
+}
+
+Volume::Volume(VolumeInfo info, std::shared_ptr<const std::byte> memory)
+    : info_(std::move(info)), layout_(info_.geometry.size), memory_(std::move(memory)) {}
+
+std::size_t Volume::cells_offset(const VolumeGeometry& geometry, VoxelType type) {
+  const auto elements = std::size_t(BrickLayout(geometry.size).element_count());
+  return aligned(elements * bytes_per_voxel(type) + kVoxelTailBytes);
+}
+
+std::size_t Volume::block_bytes(const VolumeGeometry& geometry, VoxelType type) {
+  const glm::ivec3 cells = cell_counts(geometry);
+  return aligned(cells_offset(geometry, type) + std::size_t(cells.x) * std::size_t(cells.y) *
+                                                    std::size_t(cells.z) * sizeof(CellRange));
+}
+
+glm::ivec3 Volume::cell_counts(const VolumeGeometry& geometry) {
+  return (geometry.size + (kCellEdge - 1)) / kCellEdge;
+}
+
+std::span<const CellRange> Volume::cells() const {
+  const glm::ivec3 counts = cell_counts();
+  const std::byte* first = memory_.get() + cells_offset(info_.geometry, info_.type);
+  return {reinterpret_cast<const CellRange*>(first),
+          std::size_t(counts.x) * std::size_t(counts.y) * std::size_t(counts.z)};
+}
+
+double Volume::value_bias() const {
+  switch (info_.type) {
+    case VoxelType::kInt8:
+      return -128;
+    case VoxelType::kInt16:
+      return -32768;
+    case VoxelType::kUInt8:
+    case VoxelType::kUInt16:
+    case VoxelType::kFloat32:
+      return 0;
+  }
+  return 0;
+}
+
+double Volume::at(int i, int j, int k) const {
+  const std::int64_t index = layout_.offset(i, j, k);
+  switch (info_.type) {
+    case VoxelType::kUInt8:
+    case VoxelType::kInt8:
+      return element<std::uint8_t>(voxels(), index) + value_bias();
+    case VoxelType::kUInt16:
+    case VoxelType::kInt16:
+      return element<std::uint16_t>(voxels(), index) + value_bias();
+    case VoxelType::kFloat32:
+      return element<float>(voxels(), index);
+  }
+  return 0;
+}
+
+const char* name_of(VoxelType type) {
+  switch (type) {
+    case VoxelType::kUInt8:
+      return "uint8";
+    case VoxelType::kInt8:
+      return "int8";
+    case VoxelType::kUInt16:
+      return "uint16";
+    case VoxelType::kInt16:
+      return "int16";
+    case VoxelType::kFloat32:
+      return "float32";
+  }
+  return "unknown";
+}
+
+}  // namespace goldthread
