@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// The gateway: serves the page over HTTP and talks to it over a WebSocket (docs/viewer-protocol.md).
-// It runs its own thread; every method returns at once and may be called from any thread. A slow
-// page gets newer pictures, not more of them; a malicious one is closed. Who drives is decided here.
+// The gateway: serves the page over HTTP and talks to it over a WebSocket
+// (docs/viewer-protocol.md). It runs its own thread; every method returns at once and may be called
+// from any thread. A slow page gets newer pictures, not more of them; a malicious one is closed.
+// Who drives is decided here.
 
+#include <chrono>
 #include <cstddef>
 #include <cstdint>
 #include <memory>
@@ -17,10 +19,19 @@
 
 namespace goldthread {
 
+/// How much a page may take before it is closed.
+struct GatewayLimits {
+  std::size_t max_connections = 256;            ///< sockets, HTTP and WebSocket together
+  std::chrono::milliseconds handshake{10'000};  ///< from connecting to a whole request, or `hello`
+  std::chrono::milliseconds stalled{30'000};    ///< for one message to be taken by the page
+  std::chrono::milliseconds silent{60'000};     ///< without an answer to the keep-alive pings
+};
+
 struct GatewayOptions {
   std::string host = "127.0.0.1";
-  std::uint16_t port = 8080;
-  std::string token;  ///< what a page must present
+  std::uint16_t port = 8080;  ///< 0: any free one
+  std::string token;          ///< what a page must present; not empty
+  GatewayLimits limits;
 };
 
 /// One encoded part of a picture.
@@ -62,8 +73,9 @@ using GatewayEvent = std::variant<CameraInput, EditInput, SizeInput, AudienceCha
 
 class Gateway {
  public:
-  /// Binds and starts to serve. Throws FatalError if the address cannot be had.
+  /// Binds and starts to serve. Throws FatalError if the address cannot be had (kClusterFailed).
   explicit Gateway(GatewayOptions options);
+  /// Tells the pages that the server goes away, for at most half a second, and joins its thread.
   ~Gateway();
   Gateway(const Gateway&) = delete;
   Gateway& operator=(const Gateway&) = delete;
@@ -71,18 +83,23 @@ class Gateway {
   /// The port that was bound (the one asked for, or the one found for port 0).
   std::uint16_t port() const;
 
+  // Malformed arguments are bugs of the caller and throw std::invalid_argument.
+
   /// The newest picture: each page gets it as soon as it has room, unless a newer one comes first.
+  /// Pages that arrive later start with it. 1 … 255 regions inside the image, encodings 1 or 2.
   void publish(Picture picture);
-  /// JSON for all pages. `welcome_json` (without viewer, driver, viewers) is kept for later pages
-  /// and turns waiting ones into spectators; `state_json` messages of one `type` replace each other
-  /// for a page that is slow.
+  /// JSON for all pages. `welcome_json` (without viewer, driver, viewers) describes the session as
+  /// it is at the call; it is kept for later pages and turns waiting ones into spectators.
   void set_welcome(std::string welcome_json);
+  /// `state_json` messages of one `type` replace each other for a page that is slow. Later pages
+  /// get the newest of each type since the last set_welcome, after their welcome.
   void broadcast(std::string state_json);
-  /// JSON for one page.
+  /// JSON for one page; dropped if that page has gone.
   void send(std::uint32_t viewer, std::string json);
 
-  /// What has come since the last call, in order; camera inputs that a newer one of the same page
-  /// overtook are left out.
+  /// What has come since the last call, in order; cameras, sizes and audience changes that a newer
+  /// one of their kind overtook are left out. An audience change is the state at its place in the
+  /// order: states between two calls may be skipped, the newest never is.
   std::vector<GatewayEvent> take_events();
 
  private:

@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+// What a page may say (docs/viewer-protocol.md, "Page to gateway"), decoded from JSON. Decoding
+// checks form: size, nesting, UTF-8, types, finite numbers; whatever fails is no page of ours and
+// is closed. Values of good form but out of range are a user's mistake and are refused instead.
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <variant>
+
+#include "common/base/result.h"
+#include "common/base/types.h"
+#include "common/scene/scene.h"
+
+namespace goldthread::page {
+
+inline constexpr std::uint32_t kProtocol = 1;
+inline constexpr std::size_t kMaxMessageBytes = std::size_t{1} << 20;
+inline constexpr int kMaxNesting = 16;
+inline constexpr std::int64_t kMinSide_px = 16;
+inline constexpr std::int64_t kMaxSide_px = 4096;
+
+struct Hello {
+  std::int64_t protocol = 0;
+};
+struct MoveCamera {
+  std::uint32_t serial = 0;
+  Camera camera;
+};
+struct Edit {
+  std::uint32_t serial = 0;
+  std::string edit_json;  ///< the `edit` object
+};
+struct Resize {
+  std::uint32_t serial = 0;
+  std::int64_t width = 0, height = 0;
+};
+struct Drive {};
+struct Ack {
+  std::uint32_t picture = 0;
+};
+struct Ping {
+  double time = 0;
+};
+using Message = std::variant<Hello, MoveCamera, Edit, Resize, Drive, Ack, Ping>;
+
+/// The message in `text`, or what is wrong with its form. Reasons never repeat the page's text.
+Result<Message> decode(std::string_view text);
+
+/// Why this camera cannot be rendered from (finite, but degenerate or out of range), if so.
+std::optional<Failure> refusal(const Camera& camera);
+/// Why an image cannot have this size, if so.
+std::optional<Failure> refusal(const Resize& resize);
+
+}  // namespace goldthread::page

@@ -1,0 +1,341 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "compositor/gateway/session.h"
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+#include <stdexcept>
+#include <utility>
+
+namespace goldthread {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+std::shared_ptr<const std::string> shared(std::string text) {
+  return std::make_shared<const std::string>(std::move(text));
+}
+
+Json message_of_ours(const std::string& text) {
+  Json json = Json::parse(text, nullptr, /*allow_exceptions=*/false);
+  if (!json.is_object() || !json.contains("type") || !json["type"].is_string()) {
+    throw std::invalid_argument("a message to a page is a JSON object with a type");
+  }
+  return json;
+}
+
+std::shared_ptr<const NumberedPicture> numbered(Picture picture, std::uint32_t number) {
+  auto result = std::make_shared<NumberedPicture>();
+  result->number = number;
+  result->headers.reserve(picture.regions.size());
+  for (std::size_t i = 0; i < picture.regions.size(); ++i) {
+    result->headers.push_back(encode(region_header(picture, i, number)));
+  }
+  result->picture = std::move(picture);
+  return result;
+}
+
+}  // namespace
+
+Viewer Session::open() {
+  pages_.emplace(++last_viewer_, Page{});
+  return last_viewer_;
+}
+
+void Session::gone(Viewer viewer) {
+  leave(viewer);
+  pages_.erase(viewer);
+}
+
+void Session::close(Viewer viewer, std::uint16_t code, std::string reason) {
+  const auto found = pages_.find(viewer);
+  if (found == pages_.end() || found->second.stage >= Stage::kClosing) return;
+  leave(viewer);
+  found->second = Page{};
+  found->second.stage = Stage::kClosing;
+  found->second.close = CloseFrame{code, std::move(reason)};
+}
+
+void Session::close_all(std::uint16_t code, const std::string& reason) {
+  for (const auto& entry : pages_) close(entry.first, code, reason);
+}
+
+bool Session::greeted(Viewer viewer) const {
+  const auto found = pages_.find(viewer);
+  return found != pages_.end() && found->second.stage != Stage::kConnected;
+}
+
+// ---- what pages say
+
+void Session::receive_text(Viewer viewer, std::string_view text) {
+  const auto found = pages_.find(viewer);
+  if (found == pages_.end() || found->second.stage >= Stage::kClosing) return;
+  const Result<page::Message> message = page::decode(text);
+  if (!message) {
+    close(viewer, kPolicy, message.failure().where + " " + message.failure().what);
+    return;
+  }
+  if (found->second.stage == Stage::kConnected && !std::holds_alternative<page::Hello>(*message)) {
+    close(viewer, kPolicy, "hello must come first");
+    return;
+  }
+  std::visit([&](const auto& known) { handle(viewer, found->second, known); }, *message);
+}
+
+void Session::receive_binary(Viewer viewer) {
+  close(viewer, kPolicy, "pages send no binary messages");
+}
+
+void Session::handle(Viewer viewer, Page& page, const page::Hello& hello) {
+  if (page.stage != Stage::kConnected) {
+    close(viewer, kPolicy, "hello comes once");
+    return;
+  }
+  if (hello.protocol != page::kProtocol) {
+    refuse(viewer, page, 0,
+           {"hello.protocol", "this server speaks protocol " + std::to_string(page::kProtocol),
+            "reload the page"});
+    page.stage = Stage::kClosing;
+    page.close = CloseFrame{kPolicy, "wrong protocol"};
+    return;
+  }
+  page.stage = Stage::kWaiting;
+  if (driver_ == 0) driver_ = viewer;
+  tell_driver(viewer);
+  if (!welcome_.empty()) {
+    welcome(viewer, page);
+    return;
+  }
+  const bool loading_known =
+      std::any_of(retained_.begin(), retained_.end(),
+                  [](const Retained& state) { return state.type == "loading"; });
+  if (!loading_known) {
+    enqueue(viewer, page,
+            {"loading", shared(R"({"type":"loading","what":"volume","done":0,"total":0})")});
+  }
+  for (const Retained& state : retained_) enqueue(viewer, page, {state.type, state.text});
+}
+
+void Session::handle(Viewer viewer, Page& page, const page::MoveCamera& move) {
+  if (!accepts_input(viewer, page, move.serial)) return;
+  if (const auto failure = page::refusal(move.camera)) {
+    refuse(viewer, page, move.serial, *failure);
+    return;
+  }
+  events_.push_back(CameraInput{viewer, move.serial, move.camera});
+}
+
+void Session::handle(Viewer viewer, Page& page, const page::Edit& edit) {
+  if (!accepts_input(viewer, page, edit.serial)) return;
+  events_.push_back(EditInput{viewer, edit.serial, edit.edit_json});
+}
+
+void Session::handle(Viewer viewer, Page& page, const page::Resize& resize) {
+  if (!accepts_input(viewer, page, resize.serial)) return;
+  if (const auto failure = page::refusal(resize)) {
+    refuse(viewer, page, resize.serial, *failure);
+    return;
+  }
+  events_.push_back(SizeInput{
+      viewer,
+      resize.serial,
+      {static_cast<std::int32_t>(resize.width), static_cast<std::int32_t>(resize.height)}});
+}
+
+void Session::handle(Viewer viewer, Page&, const page::Drive&) {
+  if (driver_ == viewer) return;
+  driver_ = viewer;
+  tell_driver(0);
+}
+
+void Session::handle(Viewer viewer, Page& page, const page::Ack& ack) {
+  if (ack.picture > page.last_begun) {
+    close(viewer, kPolicy, "ack of a picture that was never sent");
+    return;
+  }
+  // A page that shows a picture will not show an older one any more.
+  while (!page.unacknowledged.empty() && page.unacknowledged.front() <= ack.picture) {
+    page.unacknowledged.pop_front();
+  }
+}
+
+void Session::handle(Viewer viewer, Page& page, const page::Ping& ping) {
+  enqueue(viewer, page, {"", shared(Json{{"type", "pong"}, {"time", ping.time}}.dump())});
+}
+
+bool Session::accepts_input(Viewer viewer, Page& page, std::uint32_t serial) {
+  if (serial <= page.serial) {
+    close(viewer, kPolicy, "serial does not grow");
+    return false;
+  }
+  page.serial = serial;
+  return viewer == driver_;
+}
+
+void Session::refuse(Viewer viewer, Page& page, std::uint32_t serial, const Failure& failure) {
+  const Json json{{"type", "refused"},
+                  {"serial", serial},
+                  {"where", failure.where},
+                  {"what", failure.what},
+                  {"mend", failure.mend}};
+  enqueue(viewer, page, {"", shared(json.dump())});
+}
+
+// ---- who is there
+
+std::uint32_t Session::present_count() const {
+  return static_cast<std::uint32_t>(std::count_if(
+      pages_.begin(), pages_.end(), [](const auto& entry) { return present(entry.second); }));
+}
+
+AudienceChange Session::audience() const {
+  const bool ready = std::any_of(pages_.begin(), pages_.end(), [](const auto& entry) {
+    const Page& page = entry.second;
+    return page.stage == Stage::kWatching && page.unacknowledged.size() < kMaxUnacknowledged &&
+           !page.waiting;
+  });
+  return {present_count(), ready};
+}
+
+void Session::leave(Viewer viewer) {
+  const auto found = pages_.find(viewer);
+  if (found == pages_.end() || !present(found->second)) return;
+  found->second.stage = Stage::kClosed;
+  if (driver_ == viewer) {
+    const auto heir = std::find_if(pages_.begin(), pages_.end(),
+                                   [](const auto& entry) { return present(entry.second); });
+    driver_ = heir == pages_.end() ? 0 : heir->first;
+  }
+  tell_driver(0);
+}
+
+void Session::tell_driver(Viewer except) {
+  const auto text =
+      shared(Json{{"type", "driver"}, {"driver", driver_}, {"viewers", present_count()}}.dump());
+  for (auto& [viewer, page] : pages_) {
+    if (viewer != except && page.stage == Stage::kWatching) {
+      enqueue(viewer, page, {"driver", text});
+    }
+  }
+}
+
+void Session::welcome(Viewer viewer, Page& page) {
+  page.stage = Stage::kWatching;
+  // What the page was still to be told about the time before is overtaken by the welcome.
+  std::erase_if(page.texts, [&](const QueuedText& queued) {
+    if (queued.type.empty()) return false;
+    page.text_bytes -= queued.text->size();
+    return true;
+  });
+  const Json numbers{{"viewer", viewer}, {"driver", driver_}, {"viewers", present_count()}};
+  std::string text = numbers.dump();
+  text.back() = ',';
+  enqueue(viewer, page, {"", shared(text + welcome_)});
+  for (const Retained& state : retained_) {
+    if (state.type != "loading") enqueue(viewer, page, {state.type, state.text});
+  }
+  if (page.stage == Stage::kWatching) page.waiting = newest_;
+}
+
+// ---- what the program says
+
+void Session::set_welcome(const std::string& welcome_json) {
+  Json json = message_of_ours(welcome_json);
+  for (const char* ours : {"viewer", "driver", "viewers"}) json.erase(ours);
+  welcome_ = json.dump().substr(1);
+  retained_.clear();
+  for (auto& [viewer, page] : pages_) {
+    if (page.stage == Stage::kWaiting) welcome(viewer, page);
+  }
+}
+
+void Session::broadcast(const std::string& state_json) {
+  const Json json = message_of_ours(state_json);
+  const std::string type = json["type"];
+  const auto text = shared(state_json);
+  const auto found = std::find_if(retained_.begin(), retained_.end(),
+                                  [&](const Retained& state) { return state.type == type; });
+  if (found == retained_.end()) {
+    retained_.push_back({type, text});
+  } else {
+    found->text = text;
+  }
+  for (auto& [viewer, page] : pages_) {
+    if (present(page)) enqueue(viewer, page, {type, text});
+  }
+}
+
+void Session::send(Viewer viewer, std::string json) {
+  message_of_ours(json);
+  const auto found = pages_.find(viewer);
+  if (found == pages_.end() || !present(found->second)) return;
+  enqueue(viewer, found->second, {"", shared(std::move(json))});
+}
+
+void Session::publish(Picture picture) {
+  check_picture(picture);
+  newest_ = numbered(std::move(picture), ++last_picture_);
+  for (auto& [viewer, page] : pages_) {
+    if (page.stage == Stage::kWatching) page.waiting = newest_;
+  }
+}
+
+// ---- what a page is told next
+
+void Session::enqueue(Viewer viewer, Page& page, QueuedText text) {
+  if (page.stage >= Stage::kClosing) return;
+  const std::size_t bytes = text.text->size();
+  const auto same = std::find_if(page.texts.begin(), page.texts.end(), [&](const QueuedText& old) {
+    return !text.type.empty() && old.type == text.type;
+  });
+  if (same != page.texts.end()) {
+    page.text_bytes -= same->text->size();
+    *same = std::move(text);
+  } else {
+    page.texts.push_back(std::move(text));
+  }
+  page.text_bytes += bytes;
+  if (page.texts.size() > kMaxQueuedTexts || page.text_bytes > kMaxQueuedBytes) {
+    close(viewer, kPolicy, "the page does not read what it is sent");
+  }
+}
+
+std::optional<Frame> Session::next_frame(Viewer viewer) {
+  const auto found = pages_.find(viewer);
+  if (found == pages_.end()) return std::nullopt;
+  Page& page = found->second;
+  if (!page.texts.empty()) {
+    TextFrame frame{std::move(page.texts.front().text)};
+    page.texts.pop_front();
+    page.text_bytes -= frame.text->size();
+    return frame;
+  }
+  if (page.close) {
+    page.stage = Stage::kClosed;
+    return *std::exchange(page.close, std::nullopt);
+  }
+  return next_region(page);
+}
+
+std::optional<Frame> Session::next_region(Page& page) {
+  if (!page.sending && page.waiting && page.unacknowledged.size() < kMaxUnacknowledged) {
+    page.sending = std::exchange(page.waiting, nullptr);
+    page.next_region = 0;
+    page.last_begun = page.sending->number;
+    page.unacknowledged.push_back(page.last_begun);
+  }
+  if (!page.sending) return std::nullopt;
+  RegionFrame frame{page.sending, page.next_region++};
+  if (page.next_region == page.sending->headers.size()) page.sending = nullptr;
+  return frame;
+}
+
+std::vector<GatewayEvent> Session::take_events() {
+  const AudienceChange now = audience();
+  if (now.viewers != reported_.viewers || now.ready != reported_.ready) {
+    reported_ = now;
+    events_.push_back(now);
+  }
+  return std::exchange(events_, {});
+}
+
+}  // namespace goldthread
