@@ -45,6 +45,8 @@ class Buffer {
     begin_ += count;
     size_ -= count;
   }
+  /// Keeps the first `size` bytes of the window; size ≤ size().
+  void truncate(std::size_t size) { size_ = size; }
 
  private:
   struct Free {

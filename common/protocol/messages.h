@@ -96,11 +96,13 @@ struct TileDone {
   GOLDTHREAD_MESSAGE(TileDone, &TileDone::epoch, &TileDone::tile, &TileDone::to,
                      &TileDone::cost_us, &TileDone::rays, &TileDone::samples)
 };
-/// Each tile of a compositor's band is at `level` or finer.
+/// Each tile of a compositor's band is at `level` or finer. `squared_error` is the estimated mean
+/// square error of the band at that level, per pixel and colour channel.
 struct BandReady {
   Epoch epoch;
   Level level;
-  GOLDTHREAD_MESSAGE(BandReady, &BandReady::epoch, &BandReady::level)
+  double squared_error = 0;
+  GOLDTHREAD_MESSAGE(BandReady, &BandReady::epoch, &BandReady::level, &BandReady::squared_error)
 };
 /// A finished band over its background: float RGBA rows from the top, answering CollectBand.
 struct BandPicture {

@@ -8,6 +8,7 @@
 #include <chrono>
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
@@ -32,6 +33,8 @@ struct GatewayOptions {
   std::uint16_t port = 8080;  ///< 0: any free one
   std::string token;          ///< what a page must present; not empty
   GatewayLimits limits;
+  /// Called on the gateway's thread when there are events to take; must return at once.
+  std::function<void()> on_event = [] {};
 };
 
 /// One encoded part of a picture.

@@ -25,14 +25,17 @@ void Hub::when_empty(std::function<void()> done) {
 void Hub::settle() {
   for (const auto& [viewer, pull] : pulls_) pull();
   std::vector<Viewer> flooding;
+  auto events = session_.take_events();
+  const bool news = !events.empty();
   {
     const std::scoped_lock lock(mutex_);
-    for (GatewayEvent& event : session_.take_events()) {
+    for (GatewayEvent& event : events) {
       const auto* edit = std::get_if<EditInput>(&event);
       const Viewer author = edit ? edit->viewer : 0;
       if (!events_.push(std::move(event))) flooding.push_back(author);
     }
   }
+  if (news) on_event_();
   if (flooding.empty()) return;
   for (const Viewer viewer : flooding) {
     session_.close(viewer, Session::kPolicy, "edits come faster than they can be taken");

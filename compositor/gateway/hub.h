@@ -8,6 +8,7 @@
 #include <map>
 #include <memory>
 #include <mutex>
+#include <utility>
 #include <vector>
 
 #include "compositor/gateway/event_queue.h"
@@ -18,7 +19,8 @@ namespace goldthread {
 
 class Hub {
  public:
-  explicit Hub(GatewayLimits limits) : limits_(limits) {}
+  Hub(GatewayLimits limits, std::function<void()> on_event)
+      : limits_(limits), on_event_(std::move(on_event)) {}
 
   const GatewayLimits& limits() const { return limits_; }
   Session& session() { return session_; }
@@ -38,6 +40,7 @@ class Hub {
 
  private:
   GatewayLimits limits_;
+  std::function<void()> on_event_;
   Session session_;
   std::map<Viewer, std::function<void()>> pulls_;
   std::function<void()> when_empty_;

@@ -1,0 +1,168 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "compositor/compositor_role.h"
+
+#include <algorithm>
+#include <utility>
+
+#include "common/base/cores.h"
+#include "common/image/display.h"
+#include "common/protocol/topology.h"
+#include "common/transport/shared_memory.h"
+#include "compositor/encode.h"
+#include "compositor/reconstruct.h"
+
+namespace goldthread {
+namespace {
+
+constexpr std::chrono::milliseconds kIdleWait{50};
+
+}  // namespace
+
+CompositorRole::CompositorRole(Transport& transport) : post_(transport) {}
+
+void CompositorRole::run() {
+  post_.to_master(Hello{kProtocolVersion, GOLDTHREAD_VERSION, Role::kCompositor, host_name(),
+                        node_key(), usable_cores()});
+  while (!stopped_) {
+    try {
+      while (auto message = post_.receive<ToCompositor>()) {
+        const auto begin = std::chrono::steady_clock::now();
+        std::visit([&](auto& value) { on(std::move(value)); }, message->second);
+        busy_ += std::chrono::steady_clock::now() - begin;
+      }
+      forward_input();
+    } catch (const FatalError& error) {
+      post_.to_master(RankFailed{error.failure()});
+    }
+    if (!stopped_) post_.wait(kIdleWait);
+  }
+  gateway_.reset();
+  post_.flush(std::chrono::seconds(2));
+}
+
+void CompositorRole::on(const BeginSession& message) {
+  compositors_ = static_cast<int>(message.compositors);
+}
+
+void CompositorRole::on(BeginView message) {
+  if (!message.grid.valid()) {
+    throw FatalError({"rank " + std::to_string(post_.rank().value), "was given a view without pixels",
+                      "", ExitStatus::kClusterFailed});
+  }
+  const Topology topology{compositors_, 1};
+  const Band band = band_of(message.grid, topology.compositor_index(post_.rank()), compositors_);
+  view_ = std::move(message);
+  samples_.emplace(view_->grid, band);
+  told_level_.reset();
+  for (const Samples& early : std::exchange(early_, {})) {
+    if (early.epoch == view_->epoch) place(early);
+  }
+}
+
+void CompositorRole::on(Samples message) {
+  if (!view_ || message.epoch > view_->epoch) {
+    early_.push_back(std::move(message));
+    return;
+  }
+  if (message.epoch == view_->epoch) place(message);
+}
+
+void CompositorRole::place(const Samples& message) {
+  const std::span samples(reinterpret_cast<const Sample*>(message.colors.data()),
+                          message.colors.size() / sizeof(Sample));
+  if (!samples_->place(message.tile, message.from, message.to, samples)) {
+    throw FatalError({"rank " + std::to_string(post_.rank().value),
+                      "was sent samples that do not fit tile " + std::to_string(message.tile.value),
+                      "start the same build of goldthread on every host",
+                      ExitStatus::kClusterFailed});
+  }
+  const auto level = samples_->level();
+  if (!level || level == told_level_) return;
+  told_level_ = level;
+  post_.to_master(BandReady{view_->epoch, *level, estimate_squared_error(*samples_)});
+}
+
+void CompositorRole::on(const Present& message) {
+  if (!view_ || message.epoch != view_->epoch || samples_->tiles().empty()) return;
+  const PixelRect rect = samples_->rect();
+  const auto pixels = reconstruct(*samples_, view_->background);
+  const auto rgb = display_rgb8(pixels, view_->color_space);
+  const Encoding encoding = message.lossless ? Encoding::kZstdRgb : Encoding::kJpeg;
+  EncodedBand band;
+  band.present = message;
+  band.image = view_->grid.image;
+  band.rect = rect;
+  band.encoding = static_cast<std::uint8_t>(encoding);
+  band.spacing_px =
+      static_cast<std::uint8_t>(samples_->level().value_or(kCoarsestLevel).spacing_px());
+  band.payload = encode_pixels(rgb, {rect.width, rect.height}, encoding);
+  post_.to_compositor(Topology{compositors_, 1}.gateway(), std::move(band));
+}
+
+void CompositorRole::on(const CollectBand& message) {
+  if (!view_ || message.epoch != view_->epoch) return;
+  const auto pixels = reconstruct(*samples_, view_->background);
+  BandPicture picture{message.epoch, samples_->rect(), Buffer(pixels.size() * sizeof(float))};
+  std::memcpy(picture.pixels.data(), pixels.data(), picture.pixels.size());
+  post_.to_master(std::move(picture));
+}
+
+std::size_t CompositorRole::bands_with_pixels() const {
+  std::size_t count = 0;
+  for (int i = 0; i < compositors_; ++i) {
+    const Band band = band_of(view_->grid, i, compositors_);
+    count += band.last_row > band.first_row ? 1 : 0;
+  }
+  return count;
+}
+
+void CompositorRole::on(EncodedBand message) {
+  if (!gateway_ || !view_) return;
+  if (auto picture = assembly_.add(std::move(message), bands_with_pixels())) {
+    gateway_->publish(std::move(*picture));
+  }
+}
+
+void CompositorRole::on(OpenGateway message) {
+  GatewayOptions options;
+  options.host = std::move(message.host);
+  options.port = message.port;
+  options.token = std::move(message.token);
+  options.on_event = [this] { post_.wake(); };
+  gateway_ = std::make_unique<Gateway>(std::move(options));
+  post_.to_master(GatewayOpened{gateway_->port()});
+}
+
+void CompositorRole::on(Welcome message) {
+  if (gateway_) gateway_->set_welcome(std::move(message.json));
+}
+void CompositorRole::on(Broadcast message) {
+  if (gateway_) gateway_->broadcast(std::move(message.json));
+}
+void CompositorRole::on(Reply message) {
+  if (gateway_) gateway_->send(message.viewer, std::move(message.json));
+}
+
+void CompositorRole::on(const ReportCounters&) {
+  post_.to_master(Counters{post_.sent(), std::chrono::duration<double>(busy_).count()});
+}
+
+void CompositorRole::on(const Stop&) { stopped_ = true; }
+
+void CompositorRole::forward_input() {
+  if (!gateway_) return;
+  struct Forward {
+    Post& post;
+    void operator()(CameraInput& e) const {
+      post.to_master(ViewerCamera{e.viewer, e.serial, e.camera});
+    }
+    void operator()(EditInput& e) const {
+      post.to_master(ViewerEdit{e.viewer, e.serial, std::move(e.edit_json)});
+    }
+    void operator()(SizeInput& e) const { post.to_master(ViewerSize{e.viewer, e.serial, e.size}); }
+    void operator()(AudienceChange& e) const { post.to_master(Audience{e.viewers, e.ready}); }
+  };
+  for (GatewayEvent& event : gateway_->take_events()) std::visit(Forward{post_}, event);
+}
+
+}  // namespace goldthread

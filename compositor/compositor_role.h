@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+// A compositor rank: keeps the samples of its band, tells the master when a level of it is whole,
+// encodes it when told to. The first one also runs the gateway, through which input reaches the
+// master and pictures reach the pages. Knows neither how a sample came to be nor who asked for it.
+
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "common/transport/post.h"
+#include "compositor/gateway/gateway.h"
+#include "compositor/picture_assembly.h"
+#include "compositor/sample_array.h"
+
+namespace goldthread {
+
+class CompositorRole {
+ public:
+  explicit CompositorRole(Transport& transport);
+  /// Serves until the master says stop. What fails is told to the master, which ends the job.
+  void run();
+
+ private:
+  void on(const BeginSession& message);
+  void on(BeginView message);
+  void on(Samples message);
+  void on(const Present& message);
+  void on(const CollectBand& message);
+  void on(EncodedBand message);
+  void on(OpenGateway message);
+  void on(Welcome message);
+  void on(Broadcast message);
+  void on(Reply message);
+  void on(const ReportCounters& message);
+  void on(const Stop& message);
+  void place(const Samples& samples);
+  void forward_input();
+  std::size_t bands_with_pixels() const;
+
+  Post post_;
+  bool stopped_ = false;
+  int compositors_ = 1;
+  std::optional<BeginView> view_;
+  std::optional<SampleArray> samples_;
+  std::optional<Level> told_level_;
+  /// Samples that overtook the BeginView of their epoch, on their way from another rank.
+  std::vector<Samples> early_;
+  PictureAssembly assembly_;
+  std::chrono::steady_clock::duration busy_{0};
+  std::unique_ptr<Gateway> gateway_;
+};
+
+}  // namespace goldthread

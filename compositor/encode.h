@@ -1,0 +1,19 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+// Pixels to bytes for a viewer: JPEG while the view moves, zstd without loss when it rests.
+
+#include <cstdint>
+#include <span>
+
+#include "common/base/types.h"
+#include "common/protocol/buffer.h"
+
+namespace goldthread {
+
+enum class Encoding : std::uint8_t { kJpeg = 1, kZstdRgb = 2 };
+
+/// `rgb`: size.width · size.height · 3 bytes, rows from the top. Throws FatalError if the library
+/// refuses, which it does only without memory.
+Buffer encode_pixels(std::span<const std::uint8_t> rgb, ImageSize size, Encoding encoding);
+
+}  // namespace goldthread

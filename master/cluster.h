@@ -1,0 +1,145 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+// The cluster as the master sees it: greets the ranks, has the volume loaded once per node, commits
+// scenes, begins views and keeps every worker supplied with tiles. What a job (one picture, an orbit,
+// a session) needs to know comes out of poll() as events.
+
+#include <chrono>
+#include <deque>
+#include <functional>
+#include <optional>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "common/protocol/topology.h"
+#include "common/scene/scene.h"
+#include "common/transport/post.h"
+#include "master/cost_history.h"
+#include "master/scheduler.h"
+
+namespace goldthread {
+
+using Clock = std::chrono::steady_clock;
+
+struct ClusterOptions {
+  int threads = 0;           ///< per worker; 0: the cores of its node / the workers on it
+  bool interactive = false;  ///< compute threads give way to everything else
+};
+
+struct RankState {
+  Role role = Role::kWorker;
+  std::string host;
+  std::string node;
+  int threads = 1;         ///< cores of its node until the session begins, then compute threads
+  bool greeted = false;
+  std::uint64_t tiles = 0;     ///< cast since the start
+  double busy_seconds = 0;     ///< thread time spent casting since the start
+};
+
+/// What is known of the view that is being cast.
+struct ViewState {
+  Epoch epoch;
+  TileGrid grid;
+  std::vector<Level> levels;
+  Clock::time_point begin;
+  std::size_t complete_levels = 0;  ///< of `levels`, held by the compositors
+  std::uint64_t rays = 0;
+  std::uint64_t samples = 0;
+  double squared_error = 0;         ///< estimated mean square, in units of 1, of the complete level
+  std::chrono::duration<double> first_picture{0};  ///< until the first level was complete
+  std::chrono::duration<double> complete{0};       ///< until the newest complete level was
+  struct Tile {
+    Rank worker;
+    double seconds = 0;
+  };
+  std::vector<Tile> tiles;
+
+  bool finished() const { return complete_levels == levels.size(); }
+  std::optional<Level> level() const {
+    if (complete_levels == 0) return {};
+    return levels[complete_levels - 1];
+  }
+};
+
+/// A further level of the view is complete at all compositors.
+struct LevelReady {};
+using ClusterEvent = std::variant<LevelReady, BandPicture, Counters, GatewayOpened, ViewerCamera,
+                                  ViewerEdit, ViewerSize, Audience>;
+
+class Cluster {
+ public:
+  Cluster(Transport& transport, Topology topology, ClusterOptions options);
+
+  /// Waits until every rank has said hello. Throws FatalError on a mismatch or a silent rank.
+  void greet();
+  /// Has the scene's volume read once on each node; `progress` is told the fraction. Throws what a
+  /// reader failed with. Events of pages that come meanwhile are kept.
+  VolumeInfo load_volume(const SceneVolume& volume, const std::function<void(double)>& progress);
+  /// Makes a resolved scene the one that later views show.
+  void commit(const Scene& scene);
+  /// Drops the view in progress and begins another.
+  void begin_view(const Scene& scene, const TileGrid& grid, std::vector<Level> levels);
+  /// Stops handing out work of the view in progress: what is held stays as it is.
+  void cancel_view();
+
+  /// Handles what has come; waits at most `at_most` if there is nothing. The next event for the job.
+  std::optional<ClusterEvent> poll(std::chrono::microseconds at_most);
+
+  /// Predicted time for the whole cluster to take the view to its next level.
+  std::chrono::microseconds predict_next_level() const;
+
+  const ViewState& view() const { return view_; }
+  const Topology& topology() const { return topology_; }
+  const std::vector<RankState>& ranks() const { return ranks_; }
+  const std::vector<std::string>& features() const { return features_; }
+  const std::string& kernel() const { return kernel_; }
+  Post& post() { return post_; }
+
+  /// Ends the job on every other rank.
+  void stop();
+
+ private:
+  void handle(Rank from, ToMaster message);
+  void on(Rank from, Hello message);
+  void on(Rank from, LoadProgress message);
+  void on(Rank from, VolumeLoaded message);
+  void on(Rank from, VolumeMapped message);
+  void on(Rank from, SceneCommitted message);
+  void on(Rank from, TileDone message);
+  void on(Rank from, BandReady message);
+  void on(Rank from, RankFailed message);
+  template <class Event>
+  void on(Rank, Event message) {
+    events_.push_back(std::move(message));
+  }
+  void begin_session();
+  void supply(int worker);
+
+  Post post_;
+  Topology topology_;
+  ClusterOptions options_;
+  std::vector<RankState> ranks_;
+  std::deque<ClusterEvent> events_;  // not yet handed out, oldest first
+
+  std::function<void(double)> progress_;
+  std::size_t mapped_ = 0;  // workers that hold the volume
+  std::optional<VolumeInfo> volume_;
+
+  std::uint32_t revision_ = 0;
+  std::vector<std::string> features_;
+  std::string kernel_;
+
+  CostHistory costs_;
+  Scheduler scheduler_;
+  Epoch epoch_;
+  ViewState view_;
+  struct BandState {
+    std::optional<Level> level;
+    double squared_error = 0;
+    double pixels = 0;
+  };
+  std::vector<BandState> bands_;
+};
+
+}  // namespace goldthread

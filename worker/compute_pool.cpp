@@ -1,0 +1,95 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "worker/compute_pool.h"
+
+#include <sched.h>
+
+#include <utility>
+
+#include "worker/cast_quantum.h"
+
+namespace goldthread {
+namespace {
+
+/// Under SCHED_IDLE a computing thread leaves the core the moment a rank that moves messages wants
+/// it; needs no privilege. If it is refused, the thread computes as any other would.
+void give_way() {
+  const sched_param parameters{};
+  sched_setscheduler(0, SCHED_IDLE, &parameters);
+}
+
+}  // namespace
+
+ComputePool::ComputePool(unsigned threads, bool idle_priority, std::function<void()> notify)
+    : notify_(std::move(notify)) {
+  for (unsigned i = 0; i < threads; ++i) {
+    threads_.emplace_back([this, idle_priority](const std::stop_token& stop) {
+      if (idle_priority) give_way();
+      work(stop);
+    });
+  }
+}
+
+ComputePool::~ComputePool() {
+  for (std::jthread& thread : threads_) thread.request_stop();
+}
+
+void ComputePool::begin_view(std::shared_ptr<const CastView> view) {
+  const std::lock_guard lock(mutex_);
+  epoch_ = view->epoch.value;
+  view_ = std::move(view);
+  queue_.clear();
+  outbox_.clear();
+}
+
+void ComputePool::push(const RenderTile& quantum) {
+  {
+    const std::lock_guard lock(mutex_);
+    if (!view_ || quantum.epoch != view_->epoch) return;
+    queue_.push_back(quantum);
+  }
+  pushed_.notify_one();
+}
+
+std::vector<ComputePool::Done> ComputePool::take_done() {
+  const std::lock_guard lock(mutex_);
+  return std::exchange(outbox_, {});
+}
+
+std::chrono::duration<double> ComputePool::busy() const {
+  return std::chrono::nanoseconds(busy_ns_.load());
+}
+
+void ComputePool::work(const std::stop_token& stop) {
+  std::unique_lock lock(mutex_);
+  while (pushed_.wait(lock, stop, [&] { return !queue_.empty(); })) {
+    const RenderTile quantum = queue_.front();
+    queue_.pop_front();
+    const auto view = view_;
+    lock.unlock();
+    cast(*view, quantum, stop);
+    lock.lock();
+  }
+}
+
+void ComputePool::cast(const CastView& view, const RenderTile& quantum,
+                       const std::stop_token& stop) {
+  const auto begin = std::chrono::steady_clock::now();
+  auto result = cast_quantum(*view.source, view.grid, quantum, [&] {
+    return epoch_.load(std::memory_order_relaxed) != quantum.epoch.value || stop.stop_requested();
+  });
+  const auto cost = std::chrono::steady_clock::now() - begin;
+  busy_ns_ += std::chrono::nanoseconds(cost).count();
+  if (!result) return;
+  const auto cost_us = std::chrono::duration_cast<std::chrono::microseconds>(cost).count();
+  {
+    const std::lock_guard lock(mutex_);
+    if (quantum.epoch != view_->epoch) return;
+    outbox_.push_back({std::move(result->samples),
+                       {quantum.epoch, quantum.tile, quantum.to,
+                        static_cast<std::uint32_t>(cost_us), result->counts.rays,
+                        result->counts.samples}});
+  }
+  notify_();
+}
+
+}  // namespace goldthread

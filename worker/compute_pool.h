@@ -1,0 +1,65 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+// The compute threads of a worker: they take quanta in order, cast them, and leave what is done in an
+// outbox for the thread that owns the transport. A newer epoch empties the queue and makes running
+// quanta stop at their next batch.
+
+#include <atomic>
+#include <chrono>
+#include <condition_variable>
+#include <deque>
+#include <functional>
+#include <memory>
+#include <mutex>
+#include <thread>
+#include <vector>
+
+#include "common/protocol/messages.h"
+#include "worker/sample_source.h"
+
+namespace goldthread {
+
+/// A view that can be cast: immutable, shared by the threads that work on it.
+struct CastView {
+  Epoch epoch;
+  TileGrid grid;
+  std::shared_ptr<const SampleSource> source;
+};
+
+class ComputePool {
+ public:
+  struct Done {
+    Samples samples;
+    TileDone report;
+  };
+
+  /// `threads` threads, which give way to all others if `idle_priority`; `notify` is called from
+  /// them when the outbox is no longer empty.
+  ComputePool(unsigned threads, bool idle_priority, std::function<void()> notify);
+  ~ComputePool();
+
+  /// From now on only quanta of `view` are cast.
+  void begin_view(std::shared_ptr<const CastView> view);
+  /// Of another epoch than the view's: ignored.
+  void push(const RenderTile& quantum);
+  /// What was finished since the last call; never of a stale epoch.
+  std::vector<Done> take_done();
+  /// What the threads have spent on quanta, finished or abandoned.
+  std::chrono::duration<double> busy() const;
+
+ private:
+  void work(const std::stop_token& stop);
+  void cast(const CastView& view, const RenderTile& quantum, const std::stop_token& stop);
+
+  std::function<void()> notify_;
+  mutable std::mutex mutex_;
+  std::condition_variable_any pushed_;
+  std::shared_ptr<const CastView> view_;
+  std::deque<RenderTile> queue_;
+  std::vector<Done> outbox_;
+  std::atomic<std::uint32_t> epoch_{0};
+  std::atomic<std::int64_t> busy_ns_{0};
+  std::vector<std::jthread> threads_;  // last: they use all of the above
+};
+
+}  // namespace goldthread

@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+// A worker rank: holds the volume and the scene, casts the tiles it is given, sends the samples to
+// the compositor of their band and the cost to the master. Knows neither who asked nor who displays.
+
+#include <future>
+#include <memory>
+#include <optional>
+
+#include "common/transport/post.h"
+#include "worker/compute_pool.h"
+#include "worker/ray_caster.h"
+
+namespace goldthread {
+
+class WorkerRole {
+ public:
+  explicit WorkerRole(Transport& transport);
+  /// Serves until the master says stop. What fails is told to the master, which ends the job.
+  void run();
+
+ private:
+  void on(BeginSession message);
+  void on(const LoadVolume& message);
+  void on(MapVolume message);
+  void on(const CommitScene& message);
+  void on(const BeginView& message);
+  void on(const RenderTile& message);
+  void on(const ReportCounters& message);
+  void on(const Stop& message);
+  void send_done();
+  void finish_loading();
+
+  struct LoadedBlock {
+    VolumeInfo info;
+    SharedBlock share;
+    std::shared_ptr<const std::byte> memory;
+  };
+
+  Post post_;
+  bool stopped_ = false;
+  BeginSession session_;
+  std::atomic<float> load_fraction_{0};
+  float told_fraction_ = 0;
+  std::optional<std::future<Result<LoadedBlock>>> loading_;
+  std::shared_ptr<const Volume> volume_;
+  std::uint32_t revision_ = 0;
+  std::shared_ptr<const CommittedScene> scene_;
+  std::optional<BeginView> view_;
+  std::unique_ptr<ComputePool> pool_;
+};
+
+}  // namespace goldthread
