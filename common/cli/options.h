@@ -1,0 +1,71 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+// The command line as data. Parsing reads nothing but its arguments, prints nothing and never
+// exits. What the scene may also say is optional: the order is option, environment, scene, default.
+
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "common/base/result.h"
+#include "common/base/types.h"
+
+namespace goldthread {
+
+enum class Command : std::uint8_t { kRender, kServe, kInfo };
+enum class LogLevel : std::uint8_t { kError, kWarn, kInfo, kDebug };
+enum class Schedule : std::uint8_t { kSquares, kRows };
+enum class Sampling : std::uint8_t { kSubdivision, kEveryPixel };
+
+/// N frames, frame i turned by i · degrees / frames.
+struct Orbit {
+  int frames = 1;
+  double degrees = 360;
+  bool operator==(const Orbit&) const = default;
+};
+
+struct Options {
+  Command command = Command::kRender;
+  std::string input;   ///< SCENE or FILE
+  std::string output;  ///< render: IMAGE; a pattern with %d if there is an orbit
+
+  std::optional<ImageSize> size;  ///< absent: the scene's
+  std::optional<double> step_mm;  ///< absent: the scene's
+
+  std::optional<int> workers;  ///< absent: 1, or what mpirun gives; refused under mpirun
+  std::optional<int> threads;  ///< absent: cores of the node / worker ranks on it
+  int compositors = 1;
+  int tile_px = 64;
+  Schedule schedule = Schedule::kSquares;
+  Sampling sampling = Sampling::kSubdivision;
+  double error = 0.5;          ///< estimated RMS error in 1/255
+  std::optional<int> samples;  ///< per pixel
+  std::optional<double> time_s;
+  std::optional<Orbit> orbit;
+
+  std::string host = "127.0.0.1";
+  std::uint16_t port = 8080;
+  std::optional<std::string> token;  ///< absent: random
+
+  std::optional<std::string> report;  ///< file to write
+  LogLevel log_level = LogLevel::kInfo;
+};
+
+/// What --help and --version ask for: to be printed on stdout, status 0.
+struct TextOutcome {
+  std::string text;
+};
+using CommandLine = std::variant<Options, TextOutcome>;
+
+/// Looks a variable up; nothing if it is not set.
+using Environment = std::function<std::optional<std::string>(const std::string&)>;
+
+/// `arguments` without the program's name. A Failure has status kUsage, or is about a value in a
+/// GOLDTHREAD_… variable, which it names. Variables set to nothing count as not set.
+Result<CommandLine> parse_command_line(const std::vector<std::string>& arguments,
+                                       const Environment& environment);
+
+}  // namespace goldthread
