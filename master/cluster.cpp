@@ -27,7 +27,8 @@ Cluster::Cluster(Transport& transport, Topology topology, ClusterOptions options
       ranks_(static_cast<std::size_t>(topology.size())),
       scheduler_({}),
       bands_(static_cast<std::size_t>(topology.compositors)) {
-  ranks_[0] = {Role::kMaster, "", "", 1, true, 0, 0};
+  ranks_[0].role = Role::kMaster;
+  ranks_[0].greeted = true;
 }
 
 void Cluster::greet() {
@@ -49,7 +50,11 @@ void Cluster::greet() {
 
 void Cluster::on(Rank from, Hello message) {
   RankState& state = ranks_.at(static_cast<std::size_t>(from.value));
-  state = {message.role, message.host, message.node, static_cast<int>(message.threads), true, 0, 0};
+  state.role = message.role;
+  state.host = message.host;
+  state.node = message.node;
+  state.threads = static_cast<int>(message.threads);
+  state.greeted = true;
   const std::string own = GOLDTHREAD_VERSION;
   if (message.protocol != kProtocolVersion || message.build != own) {
     throw FatalError({rank_name(from, state),
@@ -142,6 +147,7 @@ void Cluster::on(Rank, SceneCommitted message) {
 void Cluster::begin_view(const Scene& scene, const TileGrid& grid, std::vector<Level> levels) {
   costs_.fit(grid);
   scheduler_.begin_view(grid, levels, costs_);
+  quanta_ = scheduler_.open();
   view_ = {};
   ++epoch_.value;
   view_.epoch = epoch_;
@@ -163,7 +169,10 @@ void Cluster::begin_view(const Scene& scene, const TileGrid& grid, std::vector<L
   for (int w = 0; w < topology_.workers; ++w) supply(w);
 }
 
-void Cluster::cancel_view() { scheduler_.begin_view(view_.grid, {}, costs_); }
+void Cluster::cancel_view() {
+  scheduler_.begin_view(view_.grid, {}, costs_);
+  quanta_ = 0;
+}
 
 void Cluster::supply(int worker) {
   while (const auto quantum = scheduler_.next(worker)) {
@@ -184,9 +193,7 @@ void Cluster::on(Rank from, TileDone message) {
   ViewState::Tile& tile = view_.tiles[message.tile.value];
   tile.worker = from;
   tile.seconds += seconds;
-  RankState& state = ranks_[static_cast<std::size_t>(from.value)];
-  state.tiles += 1;
-  state.busy_seconds += seconds;
+  ranks_[static_cast<std::size_t>(from.value)].tiles += 1;
 }
 
 void Cluster::on(Rank from, BandReady message) {
@@ -224,7 +231,9 @@ std::optional<ClusterEvent> Cluster::poll(std::chrono::microseconds at_most) {
   const auto end = Clock::now() + at_most;
   while (events_.empty()) {
     if (auto message = post_.receive<ToMaster>()) {
+      const auto begin = Clock::now();
       handle(message->first, std::move(message->second));
+      ranks_[0].busy_seconds += std::chrono::duration<double>(Clock::now() - begin).count();
       continue;
     }
     const auto left = std::chrono::duration_cast<std::chrono::microseconds>(end - Clock::now());
@@ -249,6 +258,34 @@ std::chrono::microseconds Cluster::predict_next_level() const {
     if (state.role == Role::kWorker) threads += state.threads;
   }
   return std::chrono::microseconds(static_cast<std::int64_t>(total_us / std::max(1, threads)));
+}
+
+void Cluster::request_counters() {
+  for (RankState& state : ranks_) state.counted = false;
+  ranks_[0].counted = true;
+  ranks_[0].sent = post_.sent();
+  for (int c = 0; c < topology_.compositors; ++c) {
+    post_.to_compositor(topology_.compositor(c), ReportCounters{});
+  }
+  for (int w = 0; w < topology_.workers; ++w) {
+    post_.to_worker(topology_.worker(w), ReportCounters{});
+  }
+}
+
+void Cluster::on(Rank from, Counters message) {
+  RankState& state = ranks_.at(static_cast<std::size_t>(from.value));
+  state.counted = true;
+  state.sent = std::move(message.sent);
+  state.busy_seconds = message.busy_seconds;
+}
+
+bool Cluster::counters_complete() const {
+  return std::all_of(ranks_.begin(), ranks_.end(), [](const auto& r) { return r.counted; });
+}
+
+double Cluster::progress() const {
+  if (quanta_ == 0) return 0;
+  return 1 - static_cast<double>(scheduler_.open()) / static_cast<double>(quanta_);
 }
 
 void Cluster::stop() {

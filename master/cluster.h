@@ -34,7 +34,9 @@ struct RankState {
   int threads = 1;         ///< cores of its node until the session begins, then compute threads
   bool greeted = false;
   std::uint64_t tiles = 0;     ///< cast since the start
-  double busy_seconds = 0;     ///< thread time spent casting since the start
+  double busy_seconds = 0;     ///< thread time spent computing since the start
+  bool counted = false;        ///< has answered the last request_counters()
+  std::vector<MessageCount> sent;  ///< as of that answer
 };
 
 /// What is known of the view that is being cast.
@@ -64,8 +66,8 @@ struct ViewState {
 
 /// A further level of the view is complete at all compositors.
 struct LevelReady {};
-using ClusterEvent = std::variant<LevelReady, BandPicture, Counters, GatewayOpened, ViewerCamera,
-                                  ViewerEdit, ViewerSize, Audience>;
+using ClusterEvent = std::variant<LevelReady, BandPicture, GatewayOpened, ViewerCamera, ViewerEdit,
+                                  ViewerSize, Audience>;
 
 class Cluster {
  public:
@@ -85,6 +87,12 @@ class Cluster {
 
   /// Handles what has come; waits at most `at_most` if there is nothing. The next event for the job.
   std::optional<ClusterEvent> poll(std::chrono::microseconds at_most);
+
+  /// Asks every rank what it has sent and how long it computed; poll() takes the answers in.
+  void request_counters();
+  bool counters_complete() const;
+  /// Quanta of the view that are done, as a share of all.
+  double progress() const;
 
   /// Predicted time for the whole cluster to take the view to its next level.
   std::chrono::microseconds predict_next_level() const;
@@ -108,6 +116,7 @@ class Cluster {
   void on(Rank from, SceneCommitted message);
   void on(Rank from, TileDone message);
   void on(Rank from, BandReady message);
+  void on(Rank from, Counters message);
   void on(Rank from, RankFailed message);
   template <class Event>
   void on(Rank, Event message) {
@@ -140,6 +149,7 @@ class Cluster {
     double pixels = 0;
   };
   std::vector<BandState> bands_;
+  std::size_t quanta_ = 0;  // of the view
 };
 
 }  // namespace goldthread

@@ -4,6 +4,7 @@
 #include <mpi.h>
 #include <sys/prctl.h>
 
+#include <algorithm>
 #include <condition_variable>
 #include <cstdlib>
 #include <deque>
@@ -178,8 +179,11 @@ class MpiTransport::Impl {
   bool woken_ = false;
 };
 
-bool started_by_mpi() {
-  return std::getenv("OMPI_COMM_WORLD_SIZE") != nullptr || std::getenv("PMIX_RANK") != nullptr;
+int ranks_of_mpi_job() {
+  const char* size = std::getenv("OMPI_COMM_WORLD_SIZE");
+  // srun with PMIx sets no size of Open MPI's.
+  if (size == nullptr && std::getenv("PMIX_RANK") != nullptr) size = std::getenv("SLURM_STEP_NUM_TASKS");
+  return size == nullptr ? 1 : std::max(1, std::atoi(size));
 }
 
 MpiTransport::MpiTransport() : impl_(std::make_unique<Impl>()) {}

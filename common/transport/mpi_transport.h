@@ -10,8 +10,9 @@
 
 namespace goldthread {
 
-/// Whether this process was started by mpirun or srun, from the environment they set.
-bool started_by_mpi();
+/// How many ranks the MPI job has that this process was started in, from the environment that mpirun
+/// and srun set; 1 if it was started alone.
+int ranks_of_mpi_job();
 
 /// Owns MPI from construction to destruction; make one per process, use it from one thread.
 class MpiTransport final : public Transport {

@@ -1,0 +1,92 @@
+// SPDX-License-Identifier: Apache-2.0
+// One rank of a cluster, or all of them in threads.
+
+#include <csignal>
+#include <exception>
+#include <functional>
+#include <memory>
+#include <thread>
+#include <vector>
+
+#include "common/transport/loopback.h"
+#include "common/transport/mpi_transport.h"
+#include "compositor/compositor_role.h"
+#include "master/cluster.h"
+#include "master/main/program.h"
+#include "worker/worker_role.h"
+
+namespace goldthread {
+namespace {
+
+volatile std::sig_atomic_t signalled = 0;
+
+void note_signal(int) { signalled = 1; }
+
+void catch_signals() {
+  struct sigaction action {};
+  action.sa_handler = note_signal;
+  sigaction(SIGINT, &action, nullptr);
+  sigaction(SIGTERM, &action, nullptr);
+}
+
+void run_master(Transport& transport, Topology topology, const Options& options) {
+  const bool serve = options.command == Command::kServe;
+  Cluster cluster(transport, topology, {options.threads.value_or(0), serve});
+  // Whatever happens, the other ranks are told to stop.
+  struct StopAtEnd {
+    Cluster& cluster;
+    ~StopAtEnd() { cluster.stop(); }
+  } stop_at_end{cluster};
+  cluster.greet();
+  serve ? run_serve(cluster, options) : run_render(cluster, options);
+}
+
+void run_role(Transport& transport, Topology topology, const Options& options) {
+  switch (topology.role_of(transport.rank())) {
+    case Role::kMaster: return run_master(transport, topology, options);
+    case Role::kCompositor: return CompositorRole(transport).run();
+    case Role::kWorker: return WorkerRole(transport).run();
+  }
+}
+
+int run_in_threads(const Options& options) {
+  const Topology topology{options.compositors, options.workers.value_or(1)};
+  const LoopbackNetwork network(topology.size());
+  std::vector<std::unique_ptr<Transport>> transports;
+  for (int i = 0; i < topology.size(); ++i) transports.push_back(network.connect({i}));
+  std::vector<std::jthread> ranks;
+  for (int i = 1; i < topology.size(); ++i) {
+    ranks.emplace_back([&, i] { run_role(*transports[static_cast<std::size_t>(i)], topology, options); });
+  }
+  run_role(*transports[0], topology, options);
+  return 0;
+}
+
+int run_mpi_rank(const Options& options) {
+  MpiTransport transport;
+  const auto topology = Topology::for_ranks(transport.size(), options.compositors);
+  const bool master = transport.rank() == Rank{0};
+  if (!topology) {
+    if (master) throw FatalError(topology.failure());
+    return static_cast<int>(topology.failure().status);
+  }
+  if (options.workers && *options.workers != topology->workers) {
+    const Failure failure{"--workers", "is for a single process: mpirun says how many ranks there are",
+                          "leave it out under mpirun", ExitStatus::kUsage};
+    if (master) throw FatalError(failure);
+    return static_cast<int>(failure.status);
+  }
+  run_role(transport, *topology, options);
+  return 0;
+}
+
+}  // namespace
+
+bool interrupted() { return signalled != 0; }
+
+int run_cluster(const Options& options) {
+  catch_signals();
+  return ranks_of_mpi_job() > 1 ? run_mpi_rank(options) : run_in_threads(options);
+}
+
+}  // namespace goldthread

@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+// The commands of the program. Here the rooms are put together; nothing else knows them all.
+
+#include "common/cli/options.h"
+
+namespace goldthread {
+
+/// Runs `render` or `serve`: as one rank of an MPI job, or, without mpirun, as all ranks in threads.
+/// Returns the exit status of this process; throws FatalError.
+int run_cluster(const Options& options);
+
+/// Runs `info`.
+int run_info(const Options& options);
+
+/// What the master does once all ranks are there.
+class Cluster;
+void run_render(Cluster& cluster, const Options& options);
+void run_serve(Cluster& cluster, const Options& options);
+
+/// Whether the user has asked to end (SIGINT, SIGTERM).
+bool interrupted();
+
+}  // namespace goldthread

@@ -1,0 +1,107 @@
+// SPDX-License-Identifier: Apache-2.0
+// `goldthread render`: one image, or a sequence.
+
+#include <spdlog/spdlog.h>
+
+#include <fstream>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "common/image/display.h"
+#include "common/image/image_file.h"
+#include "common/image/sequence_path.h"
+#include "common/scene/camera.h"
+#include "common/scene/resolve.h"
+#include "common/scene/scene_file.h"
+#include "master/main/program.h"
+#include "master/main/progress.h"
+#include "master/main/scene_setup.h"
+#include "master/render_job.h"
+#include "master/report.h"
+
+namespace goldthread {
+namespace {
+
+/// Where the frames go; checked before anything is computed.
+class Output {
+ public:
+  explicit Output(const Options& options) {
+    if (options.orbit) pattern_ = value_or_throw(SequencePath::parse(options.output));
+    else single_ = options.output;
+    value_or_throw(image_path(path(0).string()));
+  }
+  std::filesystem::path path(int frame) const { return pattern_ ? pattern_->at(frame) : single_; }
+
+ private:
+  std::optional<SequencePath> pattern_;
+  std::string single_;
+};
+
+void write_frame(const std::filesystem::path& path, const Scene& scene, const RenderedFrame& frame) {
+  const ImageMetadata metadata{{kSceneKey, scene_to_json(scene)},
+                               {kCameraKey, camera_to_json(*scene.camera)},
+                               {kSoftwareKey, std::string("goldthread ") + GOLDTHREAD_VERSION}};
+  if (is_float_image(path)) {
+    write_rgba32f(path, frame.size, frame.rgba, metadata);
+  } else {
+    write_rgb8(path, frame.size, display_rgb8(frame.rgba, scene.image.color_space), metadata);
+  }
+}
+
+void write_report(Cluster& cluster, const std::string& path, const std::vector<ViewState>& frames,
+                  double load_seconds) {
+  cluster.request_counters();
+  while (!cluster.counters_complete()) cluster.poll(std::chrono::milliseconds(20));
+  std::ofstream file(path);
+  file << report_json(cluster, frames, load_seconds);
+  file.close();
+  if (!file) {
+    throw FatalError({path, "cannot be written", "choose another place with --report",
+                      ExitStatus::kClusterFailed});
+  }
+}
+
+std::string count_of(std::uint64_t number) {
+  return number < 10'000'000 ? fmt::format("{:.0f} k", 1e-3 * static_cast<double>(number))
+                             : fmt::format("{:.1f} M", 1e-6 * static_cast<double>(number));
+}
+
+}  // namespace
+
+void run_render(Cluster& cluster, const Options& options) {
+  const Output output(options);
+  Scene scene = scene_of(options);
+  const auto begin = Clock::now();
+  {
+    Progress progress("reading " + scene.volumes.front().file.filename().string());
+    const VolumeInfo info = cluster.load_volume(
+        scene.volumes.front(), [&](double fraction) { progress.update(fraction); });
+    log_volume(info);
+    scene = resolve_scene(scene, info);
+  }
+  const double load_seconds = std::chrono::duration<double>(Clock::now() - begin).count();
+  cluster.commit(scene);
+
+  RenderRequest request;
+  request.grid = grid_of(options, scene.image.size);
+  if (options.time_s) request.time = std::chrono::duration<double>(*options.time_s);
+  request.interrupted = interrupted;
+  const Orbit orbit = options.orbit.value_or(Orbit{1, 0});
+  const Camera first = *scene.camera;
+  std::vector<ViewState> views;
+  Progress progress("rendering");
+  for (int i = 0; i < orbit.frames; ++i) {
+    request.progress = [&](double fraction) { progress.update((i + fraction) / orbit.frames); };
+    scene.camera = goldthread::orbit(first, i * orbit.degrees / orbit.frames);
+    RenderedFrame frame = render_frame(cluster, scene, request);
+    write_frame(output.path(i), scene, frame);
+    spdlog::info("{}: {}×{}, {} rays, {} samples, {:.0f} ms", output.path(i).string(),
+                 frame.size.width, frame.size.height, count_of(frame.view.rays),
+                 count_of(frame.view.samples), 1e3 * frame.view.complete.count());
+    views.push_back(std::move(frame.view));
+  }
+  if (options.report) write_report(cluster, *options.report, views, load_seconds);
+}
+
+}  // namespace goldthread

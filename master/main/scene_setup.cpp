@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "master/main/scene_setup.h"
+
+#include <spdlog/spdlog.h>
+
+#include "common/scene/scene_file.h"
+
+namespace goldthread {
+
+Scene scene_of(const Options& options) {
+  Scene scene = value_or_throw(read_scene(options.input));
+  if (options.size) scene.image.size = *options.size;
+  if (options.step_mm) scene.step_mm = *options.step_mm;
+  return scene;
+}
+
+TileGrid grid_of(const Options& options, ImageSize image) {
+  return options.schedule == Schedule::kRows ? TileGrid::rows_of(image)
+                                             : TileGrid::squares(image, options.tile_px);
+}
+
+void log_volume(const VolumeInfo& info) {
+  const glm::ivec3 size = info.geometry.size;
+  spdlog::info("{}: {}×{}×{} {}, values {:g} … {:g}", info.file, size.x, size.y, size.z,
+               name_of(info.type), info.minimum, info.maximum);
+  for (const std::string& note : info.notes) spdlog::warn("{}: {}", info.file, note);
+}
+
+}  // namespace goldthread

@@ -1,0 +1,18 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+// From options and scene to what the jobs ask for.
+
+#include "common/cli/options.h"
+#include "common/scene/scene.h"
+#include "common/tile/tile_grid.h"
+#include "common/volume/volume.h"
+
+namespace goldthread {
+
+/// The scene of the command line, the options that overrule it applied. Throws FatalError.
+Scene scene_of(const Options& options);
+TileGrid grid_of(const Options& options, ImageSize image);
+/// What the user should know of a volume, one line each.
+void log_volume(const VolumeInfo& info);
+
+}  // namespace goldthread

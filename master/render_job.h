@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+// One finished picture of a scene: what `goldthread render` does once per frame.
+
+#include <functional>
+#include <optional>
+#include <vector>
+
+#include "master/cluster.h"
+
+namespace goldthread {
+
+struct RenderRequest {
+  TileGrid grid;
+  /// Stop after this long with the finest level that is complete by then, but at least the first.
+  std::optional<std::chrono::duration<double>> time;
+  std::function<void(double fraction)> progress = [](double) {};
+  /// Asked now and then; true ends the job with a FatalError.
+  std::function<bool()> interrupted = [] { return false; };
+};
+
+struct RenderedFrame {
+  ImageSize size;
+  std::vector<float> rgba;  ///< over the background, premultiplied, rows from the top
+  ViewState view;           ///< of how it came about
+};
+
+/// `scene` must be resolved and committed to the cluster.
+RenderedFrame render_frame(Cluster& cluster, const Scene& scene, const RenderRequest& request);
+
+}  // namespace goldthread
