@@ -1,0 +1,268 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "common/cli/option_table.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <cmath>
+#include <initializer_list>
+#include <utility>
+#include <vector>
+
+#include "common/base/text.h"
+
+namespace goldthread {
+namespace {
+
+using Outcome = std::optional<BadValue>;
+
+constexpr std::uint8_t kRenders = command_bit(Command::kRender);
+constexpr std::uint8_t kServes = command_bit(Command::kServe);
+constexpr std::uint8_t kBoth = kRenders | kServes;
+constexpr std::uint8_t kAll = kBoth | command_bit(Command::kInfo);
+
+constexpr std::string_view kPicture = "Picture";
+constexpr std::string_view kQuality = "Quality";
+constexpr std::string_view kCluster = "Cluster";
+constexpr std::string_view kSession = "Session";
+constexpr std::string_view kOutput = "Output";
+
+/// The whole text as a number, or nothing.
+template <class Number>
+std::optional<Number> number_of(std::string_view text) {
+  Number number{};
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
+  if (error != std::errc() || end != text.data() + text.size()) return {};
+  return number;
+}
+
+std::string quoted(std::string_view text) { return fmt::format("\"{}\"", printable(text)); }
+
+Outcome read_integer(std::string_view text, int low, int high, int& value) {
+  const std::optional<int> number = number_of<int>(text);
+  if (!number || *number < low || *number > high) {
+    return BadValue{fmt::format("{} is not a whole number from {} to {}", quoted(text), low, high),
+                    fmt::format("give one from {} to {}", low, high)};
+  }
+  value = *number;
+  return {};
+}
+
+Outcome read_integer(std::string_view text, int low, int high, std::optional<int>& value) {
+  int number = 0;
+  Outcome bad = read_integer(text, low, high, number);
+  if (!bad) value = number;
+  return bad;
+}
+
+Outcome read_real(std::string_view text, double low, double high, double& value) {
+  const std::optional<double> number = number_of<double>(text);
+  if (!number || !(*number >= low && *number <= high)) {
+    return BadValue{fmt::format("{} is not a number from {:g} to {:g}", quoted(text), low, high),
+                    fmt::format("give one from {:g} to {:g}", low, high)};
+  }
+  value = *number;
+  return {};
+}
+
+template <class Value>
+Outcome read_choice(std::string_view text,
+                    std::initializer_list<std::pair<std::string_view, Value>> known, Value& value) {
+  std::vector<std::string_view> names;
+  std::string list;
+  for (const auto& [name, meaning] : known) {
+    names.push_back(name);
+    list += (list.empty() ? "" : ", ") + std::string(name);
+    if (name != text) continue;
+    value = meaning;
+    return {};
+  }
+  return BadValue{fmt::format("{} is none of {}", quoted(text), list),
+                  fmt::format("did you mean \"{}\"?", nearest_name(text, names))};
+}
+
+// ---- What this version does not have yet: the whole list ----
+
+Outcome refuse(std::string_view what, std::string_view instead) {
+  return not_in_this_version(what, instead);
+}
+
+Outcome apply_sampling(Options& options, const std::string& text) {
+  if (text == "adaptive") return refuse("adaptive sampling", "use subdivision");
+  return read_choice<Sampling>(
+      text, {{"subdivision", Sampling::kSubdivision}, {"every-pixel", Sampling::kEveryPixel}},
+      options.sampling);
+}
+
+Outcome apply_samples(Options& options, const std::string& text) {
+  Outcome bad = read_integer(text, 1, 1 << 20, options.samples);
+  if (!bad && *options.samples > 1) {
+    return refuse("more than one sample per pixel", "use --samples 1");
+  }
+  return bad;
+}
+
+Outcome apply_update(Options&, const std::string& text) {
+  int percent = 100;
+  Outcome bad = read_choice<int>(text, {{"100", 100}, {"50", 50}, {"25", 25}}, percent);
+  if (!bad && percent < 100) return refuse("partial updating", "use --update 100");
+  return bad;
+}
+
+Outcome apply_bypass(Options&, const std::string& text) {
+  if (text == "none") return {};
+  return refuse("by-passing roles", "leave --bypass out");
+}
+
+Outcome apply_data(Options&, const std::string& text) {
+  if (text.rfind("slabs", 0) == 0) return refuse("data in slabs", "use --data replicated");
+  int replicated = 0;
+  return read_choice<int>(text, {{"replicated", 0}}, replicated);
+}
+
+// ---- The others ----
+
+Outcome apply_size(Options& options, const std::string& text) {
+  constexpr int kMaxEdge = 16384;
+  const std::string_view whole = text;
+  const std::size_t cross = std::min(whole.find('x'), whole.size() - 1);
+  ImageSize size;
+  const bool bad = whole.empty() || read_integer(whole.substr(0, cross), 1, kMaxEdge, size.width) ||
+                   read_integer(whole.substr(cross + 1), 1, kMaxEdge, size.height);
+  if (bad) {
+    return BadValue{quoted(text) + " is not an image size",
+                    "give WIDTHxHEIGHT, such as 800x600, each from 1 to 16384"};
+  }
+  options.size = size;
+  return {};
+}
+
+Outcome apply_step(Options& options, const std::string& text) {
+  double step = 0;
+  Outcome bad = read_real(text, 0, 1e9, step);
+  if (!bad) options.step_mm = step;
+  return bad;
+}
+
+Outcome apply_time(Options& options, const std::string& text) {
+  double seconds = 0;
+  Outcome bad = read_real(text, 0.001, 1e9, seconds);
+  if (!bad) options.time_s = seconds;
+  return bad;
+}
+
+Outcome apply_orbit(Options& options, const std::string& text) {
+  Orbit orbit;
+  const std::size_t comma = text.find(',');
+  const std::string_view whole = text;
+  if (Outcome bad = read_integer(whole.substr(0, comma), 1, 100000, orbit.frames)) return bad;
+  if (comma != text.npos) {
+    if (Outcome bad = read_real(whole.substr(comma + 1), -36000, 36000, orbit.degrees)) return bad;
+  }
+  options.orbit = orbit;
+  return {};
+}
+
+Outcome apply_port(Options& options, const std::string& text) {
+  int port = 0;
+  Outcome bad = read_integer(text, 0, 65535, port);
+  if (!bad) options.port = static_cast<std::uint16_t>(port);
+  return bad;
+}
+
+Outcome apply_token(Options& options, const std::string& text) {
+  constexpr std::size_t kMost = 128;
+  const auto fits = [](char c) {
+    return (c >= '0' && c <= '9') || (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '-' ||
+           c == '_';
+  };
+  const bool spelled = std::all_of(text.begin(), text.end(), fits);
+  if (!spelled || text.empty() || text.size() > kMost) {
+    // The text itself is a secret and stays out of the message.
+    return BadValue{"must be 1 to 128 letters, digits, - or _", "leave it out for a random one"};
+  }
+  options.token = text;
+  return {};
+}
+
+Outcome apply_log_level(Options& options, const std::string& text) {
+  return read_choice<LogLevel>(text,
+                               {{"error", LogLevel::kError},
+                                {"warn", LogLevel::kWarn},
+                                {"info", LogLevel::kInfo},
+                                {"debug", LogLevel::kDebug}},
+                               options.log_level);
+}
+
+Outcome apply_schedule(Options& options, const std::string& text) {
+  return read_choice<Schedule>(text, {{"squares", Schedule::kSquares}, {"rows", Schedule::kRows}},
+                               options.schedule);
+}
+
+template <class Text>
+Outcome keep_text(const std::string& text, Text& value) {
+  if (text.empty()) return BadValue{"is empty", "give a value"};
+  value = text;
+  return {};
+}
+
+constexpr OptionRow kTable[] = {
+    {"output", "-o,--output", "IMAGE", kOutput,
+     "Picture to write: .png .exr .tif .jpg; with --orbit a pattern such as frame%04d.png",
+     kRenders, [](Options& o, const std::string& t) { return keep_text(t, o.output); }},
+    {"report", "--report", "FILE", kOutput,
+     "JSON: times, rays, samples, estimated error, tiles, bytes", kBoth,
+     [](Options& o, const std::string& t) { return keep_text(t, o.report); }},
+    {"log-level", "--log-level", "LEVEL", kOutput, "error, warn, info or debug [info]", kAll,
+     apply_log_level},
+    {"size", "--size", "WxH", kPicture, "Image size in pixels [the scene's]", kBoth, apply_size},
+    {"orbit", "--orbit", "N[,DEGREES]", kPicture,
+     "N frames turning DEGREES [360] in all about the target and up", kRenders, apply_orbit},
+    {"error", "--error", "E", kQuality, "Stop refining at this estimated RMS error, in 1/255 [0.5]",
+     kBoth, [](Options& o, const std::string& t) { return read_real(t, 0, 255, o.error); }},
+    {"samples", "--samples", "N", kQuality, "Stop after N samples per pixel", kBoth, apply_samples},
+    {"time", "--time", "S", kQuality, "Stop after S seconds", kBoth, apply_time},
+    {"step", "--step", "L", kQuality,
+     "Upper bound of the ray step in mm; 0 lets the error target choose [0]", kBoth, apply_step},
+    {"sampling", "--sampling", "HOW", kQuality, "subdivision or every-pixel [subdivision]", kBoth,
+     apply_sampling},
+    {"update", "--update", "PERCENT", kQuality,
+     "Share of samples updated per displayed frame [100]", kBoth, apply_update},
+    {"workers", "--workers", "N", kCluster, "Worker ranks, single process only [1]", kBoth,
+     [](Options& o, const std::string& t) { return read_integer(t, 1, 4096, o.workers); }},
+    {"threads", "--threads", "N", kCluster,
+     "Threads per worker [cores of the node / worker ranks on it]", kBoth,
+     [](Options& o, const std::string& t) { return read_integer(t, 1, 1024, o.threads); }},
+    {"compositors", "--compositors", "N", kCluster, "Compositor ranks [1]", kBoth,
+     [](Options& o, const std::string& t) { return read_integer(t, 1, 1024, o.compositors); }},
+    {"tile", "--tile", "N", kCluster, "Tile edge in pixels [64]", kBoth,
+     [](Options& o, const std::string& t) { return read_integer(t, 16, 1024, o.tile_px); }},
+    {"schedule", "--schedule", "HOW", kCluster,
+     "squares or rows: which parts of the screen go out together [squares]", kBoth, apply_schedule},
+    {"data", "--data", "WHERE", kCluster, "Where the volume lives: replicated [replicated]", kBoth,
+     apply_data},
+    {"bypass", "--bypass", "LIST", kCluster, "Roles to replace by stubs [none]", kBoth,
+     apply_bypass},
+    {"host", "--host", "H", kSession, "Address to listen on [127.0.0.1]", kServes,
+     [](Options& o, const std::string& t) { return keep_text(t, o.host); }},
+    {"port", "--port", "P", kSession, "Port to listen on, 0 for any free one [8080]", kServes,
+     apply_port},
+    {"token", "--token", "T", kSession, "What a page must present [random]", kServes, apply_token},
+};
+
+}  // namespace
+
+std::span<const OptionRow> option_table() { return kTable; }
+
+bool is_bench_subject(std::string_view name) {
+  constexpr std::array<std::string_view, 4> kSubjects = {"error", "throughput", "balance", "scale"};
+  return std::find(kSubjects.begin(), kSubjects.end(), name) != kSubjects.end();
+}
+
+BadValue not_in_this_version(std::string_view what, std::string_view instead) {
+  return {fmt::format("{} is not in this version", what), std::string(instead)};
+}
+
+}  // namespace goldthread
