@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: Apache-2.0
+// Keys that work everywhere except where text is typed.
+
+import type { Session } from './session';
+
+export interface ShortcutActions {
+  help(): void;
+  fold(): void;
+  screenshot(): void;
+}
+
+const typing = (target: EventTarget | null): boolean =>
+  target instanceof HTMLElement && (target.matches('input:not([type=range], [type=checkbox], [type=radio], [type=color]), select, textarea'));
+
+export function installShortcuts(session: Session, actions: ShortcutActions): void {
+  window.addEventListener('keydown', (event) => {
+    if (typing(event.target) || event.altKey) return;
+    const key = event.key.toLowerCase();
+    if (event.ctrlKey || event.metaKey) {
+      if (key === 'z' && !event.shiftKey) session.undo();
+      else if (key === 'y' || key === 'z') session.redo();
+      else return;
+    } else if (event.key === '?') actions.help();
+    else if (key === 'r') session.frameVolume();
+    else if (key === 'home' && session.original) session.moveCamera(session.original.camera);
+    else if (key === 'p') actions.fold();
+    else if (key === 's') actions.screenshot();
+    else return;
+    event.preventDefault();
+  });
+}
