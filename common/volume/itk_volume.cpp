@@ -6,47 +6,76 @@
 #include "common/volume/itk_volume.h"
 
 #include <fmt/format.h>
+#include <itkGDCMImageIO.h>
 #include <itkMetaImageIO.h>
 #include <itkNiftiImageIO.h>
 #include <itkNrrdImageIO.h>
+#include <itkTIFFImageIO.h>
 #include <itkVTKImageIO.h>
 
 #include <algorithm>
 #include <array>
 
+#include "common/volume/dicom_series.h"
+#include "common/volume/file_names.h"
+#include "common/volume/gzip_file.h"
+#include "common/volume/nifti_header.h"
+#include "common/volume/slice_assembly.h"
 #include "common/volume/volume_checks.h"
 
 namespace goldthread {
 namespace {
 
 namespace fs = std::filesystem;
-using ImageReader = itk::ImageIOBase::Pointer;
+using Reader = itk::ImageIOBase::Pointer;
 
 struct Format {
   const char* name;
   std::array<const char*, 4> endings;
-  ImageReader (*make)();
+  Reader (*make)();
+  bool reads_parts;  // of a file with several time steps, the first alone
 };
 
 template <class Io>
-ImageReader make_reader() {
+Reader make_reader() {
   return Io::New().GetPointer();
 }
 
-constexpr std::array<Format, 4> kFormats{
-    {{"NIfTI", {".nii", ".nii.gz", ".hdr", ".img"}, make_reader<itk::NiftiImageIO>},
-     {"NRRD", {".nrrd", ".nhdr"}, make_reader<itk::NrrdImageIO>},
-     {"MetaImage", {".mha", ".mhd"}, make_reader<itk::MetaImageIO>},
-     {"VTK", {".vtk"}, make_reader<itk::VTKImageIO>}}};
+constexpr Format kTiff{"TIFF", {".tif", ".tiff"}, make_reader<itk::TIFFImageIO>, false};
+constexpr Format kDicom{"DICOM", {}, make_reader<itk::GDCMImageIO>, false};
+constexpr std::array<Format, 5> kFormats{
+    {{"NIfTI", {".nii", ".nii.gz", ".hdr", ".img"}, make_reader<itk::NiftiImageIO>, true},
+     {"NRRD", {".nrrd", ".nhdr"}, make_reader<itk::NrrdImageIO>, false},
+     {"MetaImage", {".mha", ".mhd"}, make_reader<itk::MetaImageIO>, true},
+     {"VTK", {".vtk"}, make_reader<itk::VTKImageIO>, false},
+     kTiff}};
 
 const Format* format_of(const fs::path& file) {
-  std::string name = file.filename().string();
-  std::transform(name.begin(), name.end(), name.begin(),
-                 [](unsigned char c) { return char(std::tolower(c)); });
   for (const Format& format : kFormats)
     for (const char* ending : format.endings)
-      if (ending && name.ends_with(ending)) return &format;
+      if (ending && has_ending(file, ending)) return &format;
   return nullptr;
+}
+
+// What ITK says in its exceptions, on one line.
+Failure not_readable(const fs::path& file, const Format& format, std::string reason) {
+  std::replace(reason.begin(), reason.end(), '\n', ' ');
+  while (!reason.empty() && (reason.back() == ' ' || reason.back() == '.')) reason.pop_back();
+  return failure_of(file, fmt::format("it is not readable as {}: {}", format.name, reason),
+                    "the file is damaged or truncated, or its name ends wrongly");
+}
+
+// Calls `read`, and turns what it throws into a Failure.
+template <class Read>
+Result<LoadedVolume> guarded(const fs::path& file, const Format& format, Read read) {
+  itk::Object::SetGlobalWarningDisplay(false);
+  try {
+    return read();
+  } catch (const itk::ExceptionObject& problem) {
+    return not_readable(file, format, problem.GetDescription());
+  } catch (const std::exception& problem) {
+    return not_readable(file, format, problem.what());
+  }
 }
 
 std::optional<StoredType> stored_type_of(itk::IOComponentEnum type) {
@@ -92,82 +121,204 @@ VolumeGeometry geometry_of(const itk::ImageIOBase& io) {
   return geometry;
 }
 
-// Reads the header; fills all of `info` but the statistics.
-std::optional<Failure> describe(const fs::path& file, itk::ImageIOBase& io,
-                                const LoadOptions& options, StoredType& type, VolumeInfo& info) {
+// One file whose header has been read.
+struct OpenFile {
+  Reader io;
+  StoredType type;
+  FileSize3 size{1, 1, 1};
+  std::uint64_t steps = 1;  // volumes in it, of which the first is taken
+  std::uint64_t components = 1;
+  std::uint64_t bytes_per_step() const {
+    return size[0] * size[1] * size[2] * components * bytes_of(type);
+  }
+};
+
+// Sizes are limited one by one here, so that no product of them overflows before it is checked.
+Result<OpenFile> open(const fs::path& file, const Format& format) {
+  OpenFile opened{format.make(), StoredType::kUInt8};
+  itk::ImageIOBase& io = *opened.io;
+  io.SetFileName(file.string());
+  io.ReadImageInformation();
   const auto stored = stored_type_of(io.GetComponentType());
   if (!stored)
     return failure_of(file, "its voxels are of a type that is not known", "convert it to float");
-  type = *stored;
-  set_types(type, info);
-  FileSize3 size{1, 1, 1};
-  for (unsigned axis = 0; axis < std::min(io.GetNumberOfDimensions(), 3u); ++axis)
-    size[axis] = io.GetDimensions(axis);
-  info.geometry = geometry_of(io);
-  if (auto failure = check_geometry(file, size, info.geometry)) return failure;
-  for (unsigned axis = 3; axis < io.GetNumberOfDimensions(); ++axis)
-    if (io.GetDimensions(axis) > 1)
-      info.notes.push_back(
-          fmt::format("the first of {} time steps is shown", io.GetDimensions(axis)));
-  info.components = int(io.GetNumberOfComponents());
+  opened.type = *stored;
+  opened.components = io.GetNumberOfComponents();
+  for (unsigned axis = 0; axis < io.GetNumberOfDimensions(); ++axis) {
+    const std::uint64_t count = io.GetDimensions(axis);
+    if (axis < 3)
+      opened.size[axis] = count;
+    else
+      opened.steps *= std::clamp<std::uint64_t>(count, 1, std::uint64_t(1) << 20);
+    if (axis > 4 && count > 1)
+      return failure_of(file, fmt::format("it has {} axes", io.GetNumberOfDimensions()),
+                        "write a volume of three axes");
+  }
+  if (opened.components < 1 || opened.components > 4096)
+    return failure_of(file, fmt::format("it has {} components", opened.components),
+                      "write at most 4096 numbers per voxel");
+  return opened;
+}
+
+// All of `info` but type and statistics.
+std::optional<Failure> describe(const OpenFile& opened, const LoadOptions& options,
+                                VolumeInfo& info) {
+  if (opened.steps > 1)
+    info.notes.push_back(fmt::format("the first of {} time steps is shown", opened.steps));
+  info.components = int(opened.components);
   return choose_component(options, info);
 }
 
-void select_first_time_step(itk::ImageIOBase& io) {
+void select_region(itk::ImageIOBase& io, bool first_step_only) {
   const unsigned axes = io.GetNumberOfDimensions();
   itk::ImageIORegion region(axes);
   for (unsigned axis = 0; axis < axes; ++axis) {
     region.SetIndex(axis, 0);
-    region.SetSize(axis, axis < 3 ? io.GetDimensions(axis) : 1);
+    region.SetSize(axis, axis < 3 || !first_step_only ? io.GetDimensions(axis) : 1);
   }
   io.SetIORegion(region);
 }
 
-Result<LoadedVolume> read(const fs::path& file, const Format& format, const LoadOptions& options,
-                          bool header_only) {
-  const ImageReader io = format.make();
+// The bytes of the first time step, interleaved, at the start of the memory.
+Result<std::unique_ptr<std::byte[]>> read_voxels(const fs::path& file, const Format& format,
+                                                 const OpenFile& opened) {
+  const std::uint64_t steps = format.reads_parts ? 1 : opened.steps;
+  auto memory = allocate_voxels(file, opened.bytes_per_step() * steps);
+  if (!memory) return memory;
+  select_region(*opened.io, format.reads_parts);
+  opened.io->Read(memory->get());
+  return memory;
+}
+
+// TIFF says how large a pixel is, not how far its pages are apart.
+void take_cubic_voxels(VolumeInfo& info) {
+  if (info.geometry.size.z < 2) return;
+  info.geometry.spacing_mm.z = info.geometry.spacing_mm.x;
+  info.notes.push_back("TIFF does not tell the distance of slices: taken as wide as a pixel");
+}
+
+Result<LoadedVolume> read_file(const fs::path& file, const Format& format,
+                               const LoadOptions& options, bool header_only) {
+  auto opened = open(file, format);
+  if (!opened) return opened.failure();
   LoadedVolume loaded;
-  loaded.info.file = file.string();
-  loaded.info.format = format.name;
-  io->SetFileName(file.string());
-  io->ReadImageInformation();
-  StoredType type{};
-  if (auto failure = describe(file, *io, options, type, loaded.info)) return *failure;
+  VolumeInfo& info = loaded.info;
+  info.file = file.string();
+  info.format = format.name;
+  info.geometry = geometry_of(*opened->io);
+  if (auto failure = check_geometry(file, opened->size, info.geometry)) return *failure;
+  if (format.name == kTiff.name) take_cubic_voxels(info);
+  set_types(opened->type, info);
+  if (auto failure = describe(*opened, options, info)) return *failure;
+  const auto data_bytes = data_file_bytes(file);
+  if (!data_bytes) return data_bytes.failure();
+  if (*data_bytes)
+    if (auto failure = check_file_holds(file, **data_bytes, opened->bytes_per_step()))
+      return *failure;
   if (header_only) return loaded;
-  const std::uint64_t voxels = loaded.info.geometry.voxel_count();
-  const std::uint64_t bytes = voxels * bytes_of(type) * std::uint64_t(loaded.info.components);
-  std::error_code error;
-  const std::uint64_t file_bytes = fs::file_size(file, error);
-  if (auto failure = check_file_holds(file, file_bytes, bytes, true)) return *failure;
-  auto memory = allocate_voxels(file, bytes);
-  if (!memory) return memory.failure();
-  select_first_time_step(*io);
-  io->Read(memory->get());
-  loaded.byte_count = voxels * bytes_per_voxel(loaded.info.type);
-  take_component({memory->get(), bytes}, type, loaded.info.components, loaded.info.component,
-                 {memory->get(), loaded.byte_count});
-  loaded.memory = std::move(*memory);
-  if (options.progress) options.progress(1.0);
+
+  const std::uint64_t bytes = opened->bytes_per_step();
+  if (const auto offset = nifti_voxels_offset(file, opened->type, opened->components)) {
+    auto memory = allocate_voxels(file, *offset + bytes);
+    if (!memory) return memory.failure();
+    if (auto failure = inflate_file(file, {memory->get(), *offset + bytes}, options.progress))
+      return *failure;
+    loaded.first_byte = *offset;
+    loaded.memory = std::move(*memory);
+  } else {
+    auto memory = read_voxels(file, format, *opened);
+    if (!memory) return memory.failure();
+    loaded.memory = std::move(*memory);
+    if (options.progress) options.progress(1.0);
+  }
+  std::byte* first = loaded.memory.get() + loaded.first_byte;
+  loaded.byte_count = info.geometry.voxel_count() * bytes_per_voxel(info.type);
+  take_component({first, bytes}, opened->type, info.components, info.component,
+                 {first, loaded.byte_count});
   return loaded;
+}
+
+Result<LoadedVolume> read_slices(const std::vector<fs::path>& files, const Format& format,
+                                 VolumeInfo info, const LoadOptions& options, bool header_only) {
+  auto first = open(files[0], format);
+  if (!first) return first.failure();
+  FileSize3 size = first->size;
+  size[2] = files.size();
+  if (auto failure = check_geometry(info.file, size, info.geometry)) return *failure;
+  if (auto failure = describe(*first, options, info)) return *failure;
+  LoadedVolume loaded;
+  loaded.info = std::move(info);
+  if (header_only) {
+    set_types(first->type, loaded.info);
+    return loaded;
+  }
+  SliceAssembly assembly(std::move(loaded));
+  std::vector<std::byte> pixels;
+  for (std::size_t i = 0; i < files.size(); ++i) {
+    auto slice = open(files[i], format);
+    if (!slice) return slice.failure();
+    if (slice->size != first->size || slice->components != first->components)
+      return failure_of(
+          files[i],
+          fmt::format("this slice has {}×{}×{} pixels of {} components, the first {}×{}×{} of {}",
+                      slice->size[0], slice->size[1], slice->size[2], slice->components,
+                      first->size[0], first->size[1], first->size[2], first->components),
+          "put only slices of one volume into a folder");
+    const auto data_bytes = data_file_bytes(files[i]);
+    if (!data_bytes) return data_bytes.failure();
+    if (auto failure = check_file_holds(files[i], **data_bytes, slice->bytes_per_step()))
+      return *failure;
+    pixels.resize(slice->bytes_per_step());
+    select_region(*slice->io, false);
+    slice->io->Read(pixels.data());
+    if (auto failure = assembly.add(pixels, slice->type)) return *failure;
+    if (options.progress) options.progress(double(i + 1) / double(files.size()));
+  }
+  return std::move(assembly).finish();
 }
 
 }  // namespace
 
 bool is_itk_file_name(const fs::path& file) { return format_of(file) != nullptr; }
 
-Result<LoadedVolume> load_itk_volume(const fs::path& path, const LoadOptions& options,
-                                     bool header_only) {
-  itk::Object::SetGlobalWarningDisplay(false);
-  const Format* format = format_of(path);
-  try {
-    return read(path, *format, options, header_only);
-  } catch (const itk::ExceptionObject& problem) {
-    return failure_of(
-        path, fmt::format("not readable as {}: {}", format->name, problem.GetDescription()), "");
-  } catch (const std::exception& problem) {
-    return failure_of(path, fmt::format("not readable as {}: {}", format->name, problem.what()),
-                      "");
-  }
+Result<LoadedVolume> load_itk_file(const fs::path& file, const LoadOptions& options,
+                                   bool header_only) {
+  const Format& format = *format_of(file);
+  return guarded(file, format, [&] { return read_file(file, format, options, header_only); });
+}
+
+Result<LoadedVolume> load_dicom_series(const fs::path& path, const LoadOptions& options,
+                                       bool header_only) {
+  return guarded(path, kDicom, [&]() -> Result<LoadedVolume> {
+    auto series = find_dicom_series(path);
+    if (!series) return series.failure();
+    if (series->frames > 1) return read_file(series->files[0], kDicom, options, header_only);
+    VolumeInfo info;
+    info.file = path.string();
+    info.format = kDicom.name;
+    info.geometry = series->geometry;
+    info.notes = std::move(series->notes);
+    return read_slices(series->files, kDicom, std::move(info), options, header_only);
+  });
+}
+
+Result<LoadedVolume> load_tiff_folder(const fs::path& folder, const LoadOptions& options,
+                                      bool header_only) {
+  return guarded(folder, kTiff, [&]() -> Result<LoadedVolume> {
+    const std::vector<fs::path> files = numbered_files(folder, kTiff.endings);
+    auto first = open(files[0], kTiff);
+    if (!first) return first.failure();
+    if (first->size[2] > 1)
+      return failure_of(files[0], "it has several pages, and its folder several files",
+                        "name the one file that is meant");
+    VolumeInfo info;
+    info.file = folder.string();
+    info.format = kTiff.name;
+    info.geometry = geometry_of(*first->io);
+    info.geometry.size.z = int(std::min<std::size_t>(files.size(), 1 << 20));
+    take_cubic_voxels(info);
+    return read_slices(files, kTiff, std::move(info), options, header_only);
+  });
 }
 
 }  // namespace goldthread

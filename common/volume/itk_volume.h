@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// NIfTI, NRRD, MetaImage, TIFF, legacy VTK and DICOM, through ITK; internal to volume_io.
+// NIfTI, NRRD, MetaImage, TIFF, legacy VTK and DICOM, through ITK; internal to volume_io. With
+// `header_only` the voxels are not read and a LoadedVolume has its info alone.
 
 #include <filesystem>
 
@@ -9,12 +10,20 @@
 
 namespace goldthread {
 
-/// Whether the name of `file` is one of a format read here.
+/// Whether the name of `file` is one of a format that load_itk_file reads.
 bool is_itk_file_name(const std::filesystem::path& file);
 
-/// load_volume and probe_volume for these formats; with `header_only`, voxels are not read and the
-/// LoadedVolume has info alone.
-Result<LoadedVolume> load_itk_volume(const std::filesystem::path& path, const LoadOptions& options,
-                                     bool header_only);
+/// One file that holds a volume, of the format that its name says.
+Result<LoadedVolume> load_itk_file(const std::filesystem::path& file, const LoadOptions& options,
+                                   bool header_only);
+
+/// A DICOM series: a folder, or one of its files.
+Result<LoadedVolume> load_dicom_series(const std::filesystem::path& path,
+                                       const LoadOptions& options, bool header_only);
+
+/// The .tif files of a folder as slices, in the order of the numbers in their names. There is at
+/// least one.
+Result<LoadedVolume> load_tiff_folder(const std::filesystem::path& folder,
+                                      const LoadOptions& options, bool header_only);
 
 }  // namespace goldthread

@@ -84,4 +84,21 @@ void take_component(std::span<const std::byte> from, StoredType type, int compon
   }
 }
 
+void widen_to_float(std::span<const std::byte> from, VoxelType type, std::span<float> to) {
+  std::byte* out = reinterpret_cast<std::byte*>(to.data());
+  const std::size_t stride = bytes_per_voxel(type);
+  switch (type) {
+    case VoxelType::kUInt8:
+      return convert<std::uint8_t, float>(from.data(), stride, out, to.size());
+    case VoxelType::kInt8:
+      return convert<std::int8_t, float>(from.data(), stride, out, to.size());
+    case VoxelType::kUInt16:
+      return convert<std::uint16_t, float>(from.data(), stride, out, to.size());
+    case VoxelType::kInt16:
+      return convert<std::int16_t, float>(from.data(), stride, out, to.size());
+    case VoxelType::kFloat32:
+      return convert<float, float>(from.data(), stride, out, to.size());
+  }
+}
+
 }  // namespace goldthread

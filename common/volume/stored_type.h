@@ -41,4 +41,7 @@ StoredType stored_type(VoxelType type);
 void take_component(std::span<const std::byte> from, StoredType type, int components, int component,
                     std::span<std::byte> to);
 
+/// Held voxels of any type as floats, exactly.
+void widen_to_float(std::span<const std::byte> from, VoxelType type, std::span<float> to);
+
 }  // namespace goldthread

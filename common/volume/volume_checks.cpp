@@ -72,14 +72,12 @@ std::optional<Failure> check_geometry(const std::filesystem::path& file, const F
 }
 
 std::optional<Failure> check_file_holds(const std::filesystem::path& file, std::uint64_t file_bytes,
-                                        std::uint64_t data_bytes, bool compressed) {
-  const std::uint64_t most = compressed ? file_bytes * kDeflateLimit : file_bytes;
-  if (data_bytes <= most) return std::nullopt;
-  return failure_of(
-      file,
-      fmt::format("its header promises {} of voxels, and {} of {}data cannot hold them",
-                  megabytes(data_bytes), megabytes(file_bytes), compressed ? "compressed " : ""),
-      "the file is truncated or its header wrong: copy it again");
+                                        std::uint64_t data_bytes) {
+  if (data_bytes / kDeflateLimit <= file_bytes) return std::nullopt;
+  return failure_of(file,
+                    fmt::format("its header promises {} of voxels, and {} of data cannot hold them",
+                                megabytes(data_bytes), megabytes(file_bytes)),
+                    "the file is truncated or its header wrong: copy it again");
 }
 
 std::optional<Failure> choose_component(const LoadOptions& options, VolumeInfo& info) {

@@ -24,10 +24,10 @@ Failure failure_of(const std::filesystem::path& file, std::string what, std::str
 std::optional<Failure> check_geometry(const std::filesystem::path& file, const FileSize3& size,
                                       VolumeGeometry& geometry);
 
-/// Whether `file_bytes` of file can hold `data_bytes` of data: as they are, or compressed by
-/// deflate, which never shrinks to less than 1/1032.
+/// Whether `file_bytes` of file can hold `data_bytes` of data, at best compressed by deflate, which
+/// never shrinks to less than 1/1032.
 std::optional<Failure> check_file_holds(const std::filesystem::path& file, std::uint64_t file_bytes,
-                                        std::uint64_t data_bytes, bool compressed);
+                                        std::uint64_t data_bytes);
 
 /// The component to hold, chosen or 0; adds to info what there is to note.
 std::optional<Failure> choose_component(const LoadOptions& options, VolumeInfo& info);

@@ -28,8 +28,9 @@ struct LoadOptions {
 struct LoadedVolume {
   VolumeInfo info;
   std::unique_ptr<std::byte[]> memory;
+  std::size_t first_byte = 0;  ///< where the voxels begin in it: a multiple of their size
   std::size_t byte_count = 0;
-  std::span<const std::byte> voxels() const { return {memory.get(), byte_count}; }
+  std::span<const std::byte> voxels() const { return {memory.get() + first_byte, byte_count}; }
 };
 
 /// Reads a whole volume. Formats: NIfTI, NRRD, MetaImage, DICOM series (a folder, or one of its
