@@ -97,8 +97,9 @@ bool is_loopback_v4(std::string_view name) {
          name.find_first_not_of("0123456789.") == std::string_view::npos;
 }
 
+// The token is judged before the upgrade: a browser does not tell its page why a handshake failed,
+// so the page asks again by plain HTTP.
 std::optional<HttpReply> answer_session(const HttpRequest& request, const HttpPolicy& policy) {
-  if (!request.websocket_upgrade) return refusal(426, "This address is for WebSockets.");
   // Browsers always name the origin of a WebSocket; other programs need not.
   if (request.origins.size() > 1 ||
       (request.origins.size() == 1 && !same_origin(request.origins[0], request.hosts[0]))) {
@@ -108,7 +109,10 @@ std::optional<HttpReply> answer_session(const HttpRequest& request, const HttpPo
   if (!token || !same_secret(*token, policy.token)) {
     return refusal(403, "The token is missing or wrong: open the URL that the program printed.");
   }
-  return std::nullopt;
+  if (request.websocket_upgrade) return std::nullopt;
+  HttpReply reply = refusal(426, "This address is for WebSockets.");
+  reply.fields.emplace_back("Upgrade", "websocket");
+  return reply;
 }
 
 }  // namespace

@@ -167,6 +167,8 @@ bool reachable(const glm::dvec3& point) {
 
 Result<Message> decode(std::string_view text) {
   if (text.size() > kMaxMessageBytes) return malformed("message", "is too large");
+  // The parser would take a zero for the end of the text.
+  if (text.find('\0') != std::string_view::npos) return malformed("message", "is not JSON");
   if (nested_too_deeply(text)) return malformed("message", "is nested too deeply");
   const Json object = Json::parse(text, nullptr, /*allow_exceptions=*/false);
   if (object.is_discarded()) return malformed("message", "is not JSON");
