@@ -1,0 +1,73 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+// The kernels that exist, and how one is found. A kernel casts a span of rays, one ray per SIMD
+// lane, for one kind of voxel and one set of features; which instruction set runs it is decided
+// once per call, by Highway. To add a feature: a flag here, an `if constexpr` in ray_march-inl.h,
+// and a line in kernel_unit-inl.h.
+//
+//   scene ──commit──► Features, Storage ──find_kernel──► Kernel ──cast(arguments)──► samples
+//
+//   kernel_unit-inl.h            a unit: all combinations of features for one kind of voxel
+//   └ cast-inl.h                 positions to packets, packets to samples
+//     ├ ray_packet-inl.h         a ray per lane, set up in double, segments counted from the camera
+//     ├ ray_march-inl.h          emission and absorption, isosurfaces
+//     │ ├ cell_walk-inl.h        leaps over empty cells
+//     │ ├ field-inl.h            trilinear values and gradients from bricked voxels
+//     │ ├ transfer-inl.h         value to colour and extinction
+//     │ └ shading-inl.h          Phong
+//     └ greatest_value-inl.h     maximum intensity projection
+
+#include <string>
+#include <vector>
+
+#include "worker/kernels/kernel_types.h"
+
+namespace goldthread {
+
+/// What the scene needs of a ray. What is off is not compiled into the kernel.
+struct Features {
+  bool dvr = false;          ///< emission and absorption
+  bool shading = false;      ///< Phong: gradients are computed
+  bool isosurfaces = false;  ///< one or several, opaque or translucent
+  bool mip = false;          ///< the greatest value alone
+  bool operator==(const Features&) const = default;
+};
+
+/// How a voxel lies in memory. Signed integers are stored with their sign flipped, as unsigned.
+enum class Storage : std::uint8_t { kUInt8, kUInt16, kFloat32 };
+
+/// 32-bit byte offsets reach 2 GiB; beyond, bricks and places in them are addressed apart, slower.
+enum class Addressing : std::uint8_t { kNarrow, kWide };
+
+struct Kernel {
+  Features features;
+  Storage storage = Storage::kUInt8;
+  Addressing addressing = Addressing::kNarrow;
+  /// All kernels of one unit (a .cpp file); picks by the features.
+  CastCounts (*unit)(Features features, const CastArguments& arguments) = nullptr;
+
+  CastCounts cast(const CastArguments& arguments) const { return unit(features, arguments); }
+};
+
+Storage storage_of(VoxelType type);
+
+/// Narrow wherever the voxels allow it.
+Addressing addressing_of(const BrickLayout& layout, VoxelType type);
+
+/// The features must be a combination that a scene can have: mip alone, or dvr and isosurfaces,
+/// one or both, shaded or not.
+Kernel find_kernel(Features features, Storage storage, Addressing addressing);
+
+/// "dvr", "shading", "isosurfaces", "mip".
+std::vector<std::string> names_of(Features features);
+
+/// The instruction set that kernels run on, "AVX3": the best one that this machine has.
+std::string instruction_set();
+
+/// The instruction sets that were compiled and that this machine has, best first.
+std::vector<std::string> instruction_sets();
+
+/// Restricts every later cast of this process to one of instruction_sets(); "" lifts it. For tests.
+void force_instruction_set(const std::string& name);
+
+}  // namespace goldthread

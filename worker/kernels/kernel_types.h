@@ -1,0 +1,103 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+// What a kernel reads: the committed scene and the view as plain numbers, without SIMD types.
+// Values are in the stored domain of the voxels (value_bias already taken off), positions in voxel
+// indices, lengths in millimetres or, along a ray, in steps.
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "common/tile/sample.h"
+#include "common/volume/volume.h"
+#include "worker/sample_source.h"
+
+namespace goldthread {
+
+/// Address arithmetic of BrickLayout, ready for 32-bit lanes.
+struct FieldLayout {
+  const std::uint8_t* voxels = nullptr;
+  std::int32_t size[3] = {0, 0, 0};  ///< voxels, each at least 2
+  float upper[3] = {0, 0, 0};        ///< the greatest float below size − 1: positions end here
+  /// Byte offset = Σ coordinate·local + (coordinate >> shift)·step; void in a volume ≥ 2 GiB.
+  std::int32_t local_bytes[3] = {0, 0, 0};
+  std::int32_t step_bytes[3] = {0, 0, 0};
+  std::int32_t brick_stride[3] = {0, 0, 0};  ///< bricks to the next one along each axis
+};
+
+/// Cells of 8³ voxels, for leaping over emptiness.
+struct CellGrid {
+  std::int32_t counts[3] = {0, 0, 0};
+  /// Chebyshev distance in cells to the next visible cell, 0 in a visible one; 3 bytes of padding.
+  const std::uint8_t* distances = nullptr;
+  const CellRange* ranges = nullptr;
+};
+
+/// The transfer function as rows of red, green, blue and extinction (1/mm) at equal distances of
+/// value, joined linearly.
+struct TransferTable {
+  const float* rows = nullptr;
+  float first_value = 0;
+  float rows_per_value = 0;
+  float last_row = 1;  ///< index of the last row, at least 1
+};
+
+struct SurfaceTerm {
+  float value = 0;
+  float color[3] = {0, 0, 0};
+  float opacity = 1;
+};
+
+/// Phong's coefficients; matrices are row by row.
+struct PhongTerm {
+  float ambient = 0;
+  float shininess = 1;
+  float normal_from_gradient[9] = {};  ///< inverse transpose of world_from_index, up to a factor
+  float world_from_index[9] = {};      ///< relative to voxel (0, 0, 0), mm
+};
+
+/// A light with the material's coefficients multiplied in.
+struct LightTerm {
+  bool is_point = false;
+  float vector[3] = {0, 0,
+                     0};  ///< towards the light; of a point light its place from voxel (0,0,0), mm
+  float diffuse[3] = {0, 0, 0};
+  float specular[3] = {0, 0, 0};
+};
+
+/// Everything that does not depend on the camera.
+struct KernelScene {
+  FieldLayout field;
+  CellGrid cells;
+  TransferTable transfer;
+  std::vector<SurfaceTerm> surfaces;  ///< in ascending order of value
+  PhongTerm phong;
+  double step_mm = 1;  ///< length of a full segment
+};
+
+/// The camera in index space: the ray through pixel (x, y) starts in `origin` and runs along
+/// forward + u·right + v·up, u = (x − centre_x)·scale, v = (centre_y − y)·scale, divided by its
+/// length in the world, √(1 + u² + v²).
+struct KernelView {
+  double origin[3] = {0, 0, 0};
+  double forward[3] = {0, 0, 0};
+  double right[3] = {0, 0, 0};
+  double up[3] = {0, 0, 0};
+  double centre_x = 0;
+  double centre_y = 0;
+  double scale = 0;
+  std::vector<LightTerm> lights;
+};
+
+struct CastArguments {
+  const KernelScene& scene;
+  const KernelView& view;
+  std::span<const PixelPosition> positions;
+  std::span<Sample> samples;  ///< as many as positions
+};
+
+/// A ray ends where less than this share of what lies behind could still be seen; the error of a
+/// colour channel is below it, 0.063/255.
+constexpr float kLeastTransmittance = 1.0F / 4096;
+
+}  // namespace goldthread

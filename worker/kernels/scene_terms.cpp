@@ -1,0 +1,158 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "worker/kernels/scene_terms.h"
+
+#include <algorithm>
+#include <cmath>
+#include <glm/gtc/constants.hpp>
+#include <limits>
+
+#include "common/image/color.h"
+
+namespace goldthread {
+namespace {
+
+glm::dmat3 linear_map(const VolumeGeometry& geometry) {
+  return glm::dmat3(geometry.direction[0] * geometry.spacing_mm[0],
+                    geometry.direction[1] * geometry.spacing_mm[1],
+                    geometry.direction[2] * geometry.spacing_mm[2]);
+}
+
+void store_rows(const glm::dmat3& matrix, float* rows) {
+  for (int row = 0; row < 3; ++row)
+    for (int column = 0; column < 3; ++column) rows[3 * row + column] = float(matrix[column][row]);
+}
+
+template <class T>
+void store(const glm::dvec3& v, T* to) {
+  for (int i = 0; i < 3; ++i) to[i] = T(v[i]);
+}
+
+// v / |v| without overflow; 0 for 0.
+glm::dvec3 direction_of(const glm::dvec3& v) {
+  const double largest = std::max({std::abs(v.x), std::abs(v.y), std::abs(v.z)});
+  return largest > 0 ? glm::normalize(v / largest) : glm::dvec3(0);
+}
+
+}  // namespace
+
+glm::dvec3 linear_color(const glm::dvec3& displayed) {
+  return {linear_from_srgb(displayed.x), linear_from_srgb(displayed.y),
+          linear_from_srgb(displayed.z)};
+}
+
+SceneVolume in_computing_space(SceneVolume material, ColorSpace space) {
+  if (space == ColorSpace::kDisplay) return material;
+  if (material.transfer_function)
+    for (ColorNode& node : material.transfer_function->color) node.rgb = linear_color(node.rgb);
+  for (Isosurface& surface : material.isosurfaces) surface.color = linear_color(surface.color);
+  return material;
+}
+
+Features features_of(const SceneVolume& material, const std::vector<Light>& lights) {
+  if (material.mode == Mode::kMip) return {.mip = true};
+  Features features;
+  features.dvr = material.mode == Mode::kDvr;
+  features.isosurfaces = material.mode == Mode::kIsosurface || !material.isosurfaces.empty();
+  const bool reflects =
+      material.shading && (material.shading->diffuse > 0 || material.shading->specular > 0);
+  features.shading = reflects && std::any_of(lights.begin(), lights.end(),
+                                             [](const Light& l) { return l.intensity > 0; });
+  return features;
+}
+
+double step_of(double wanted_mm, const VolumeGeometry& geometry) {
+  const glm::dmat3 map = linear_map(geometry);
+  double smallest = std::numeric_limits<double>::infinity();
+  double diagonal = 0;
+  for (int axis = 0; axis < 3; ++axis) {
+    smallest = std::min(smallest, glm::length(map[axis]));
+    diagonal += glm::length(map[axis]) * geometry.size[axis];
+  }
+  const double step = wanted_mm > 0 ? wanted_mm : 0.5 * smallest;
+  return std::max(step, diagonal / (1 << 20));
+}
+
+FieldLayout field_layout_of(const Volume& volume) {
+  const BrickLayout& layout = volume.layout();
+  const auto bytes = std::int64_t(bytes_per_voxel(volume.info().type));
+  const std::int64_t local[3] = {1, BrickLayout::kRow, BrickLayout::kSlice};
+  const glm::i64vec3 step = layout.brick_step();
+  const bool narrow = addressing_of(layout, volume.info().type) == Addressing::kNarrow;
+  FieldLayout field;
+  field.voxels = reinterpret_cast<const std::uint8_t*>(volume.voxels());
+  for (int axis = 0; axis < 3; ++axis) {
+    field.size[axis] = layout.size[axis];
+    field.upper[axis] = std::nextafter(float(layout.size[axis] - 1), 0.0F);
+    field.local_bytes[axis] = std::int32_t(local[axis] * bytes);
+    field.step_bytes[axis] = narrow ? std::int32_t(step[axis] * bytes) : 0;
+  }
+  field.brick_stride[0] = 1;
+  field.brick_stride[1] = layout.bricks.x;
+  field.brick_stride[2] = layout.bricks.x * layout.bricks.y;
+  return field;
+}
+
+std::vector<SurfaceTerm> surface_terms_of(const std::vector<Isosurface>& surfaces,
+                                          double value_bias, double color_factor) {
+  std::vector<SurfaceTerm> terms;
+  for (const Isosurface& surface : surfaces) {
+    SurfaceTerm term;
+    term.value = float(surface.value - value_bias);
+    term.opacity = float(std::clamp(surface.opacity, 0.0, 1.0));
+    store(surface.color * color_factor, term.color);
+    terms.push_back(term);
+  }
+  std::stable_sort(terms.begin(), terms.end(),
+                   [](const SurfaceTerm& a, const SurfaceTerm& b) { return a.value < b.value; });
+  return terms;
+}
+
+PhongTerm phong_term_of(const Shading& shading, const VolumeInfo& info) {
+  PhongTerm phong;
+  phong.ambient = float(shading.ambient);
+  phong.shininess = float(shading.shininess);
+  const glm::dmat3 map = linear_map(info.geometry);
+  // Scaled to the data's range and the finest spacing, so that float neither over- nor underflows.
+  const double range = info.maximum > info.minimum ? info.maximum - info.minimum : 1.0;
+  const double finest = std::min({glm::length(map[0]), glm::length(map[1]), glm::length(map[2])});
+  store_rows(glm::transpose(glm::inverse(map)) * (finest / range), phong.normal_from_gradient);
+  store_rows(map, phong.world_from_index);
+  return phong;
+}
+
+std::vector<LightTerm> light_terms_of(const std::vector<Light>& lights, const Shading& shading,
+                                      const Camera& camera, const VolumeGeometry& geometry) {
+  std::vector<LightTerm> terms;
+  for (const Light& light : lights) {
+    LightTerm term;
+    store(light.color * (light.intensity * shading.diffuse), term.diffuse);
+    store(light.color * (light.intensity * shading.specular), term.specular);
+    if (const auto* point = std::get_if<PointLight>(&light.kind)) {
+      term.is_point = true;
+      store(point->position_mm - geometry.origin_mm, term.vector);
+    } else if (const auto* directional = std::get_if<DirectionalLight>(&light.kind)) {
+      store(-direction_of(directional->direction), term.vector);
+    } else {
+      store(-direction_of(camera.target - camera.position), term.vector);
+    }
+    terms.push_back(term);
+  }
+  return terms;
+}
+
+KernelView kernel_view_of(const Camera& camera, const CameraBasis& basis, ImageSize size,
+                          const VolumeGeometry& geometry) {
+  const glm::dmat3 index_from_world = glm::inverse(linear_map(geometry));
+  KernelView view;
+  // Subtracted in the world first: a scene far from the origin keeps its digits.
+  store(index_from_world * (camera.position - geometry.origin_mm), view.origin);
+  store(index_from_world * basis.forward, view.forward);
+  store(index_from_world * basis.right, view.right);
+  store(index_from_world * basis.up, view.up);
+  view.centre_x = 0.5 * size.width;
+  view.centre_y = 0.5 * size.height;
+  view.scale = std::tan(0.5 * camera.fovy_deg * glm::pi<double>() / 180.0) / (0.5 * size.height);
+  return view;
+}
+
+}  // namespace goldthread
