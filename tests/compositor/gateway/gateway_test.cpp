@@ -145,7 +145,7 @@ TEST_F(GatewayTest, WhatIsNotAPageIsToldSo) {
   EXPECT_EQ(status(request("GET", "/", port, "Content-Length: 3\r\n") + "abc"), 400U);
   EXPECT_EQ(status(request("GET", "/session?token=secret", port)), 426U);
   EXPECT_EQ(status(request("GET", "/session?token=wrong", port)), 403U);
-  EXPECT_EQ(status("GET / HTTP/1.1\r\nHost: evil.example\r\n\r\n"), 403U);
+  EXPECT_EQ(status("GET / HTTP/1.1\r\nConnection: close\r\nHost: evil.example\r\n\r\n"), 403U);
   EXPECT_EQ(status("GET / HTTP/1.1\r\nConnection: close\r\n\r\n"), 400U);
   EXPECT_EQ(status("nonsense\r\n\r\n"), 400U);
 }
