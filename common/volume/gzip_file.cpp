@@ -57,17 +57,25 @@ std::optional<Failure> inflate_file(const fs::path& file, std::span<std::byte> o
   const std::unique_ptr<gzFile_s, int (*)(gzFile)> stream(gzopen(file.c_str(), "rb"), gzclose);
   if (!stream) return failure_of(file, "it cannot be opened", "check that it may be read");
   gzbuffer(stream.get(), unsigned(kChunk / 4));
+  const auto truncated = [&](std::size_t done) {
+    return failure_of(
+        file, fmt::format("its data ends or is damaged after {} of {} bytes", done, out.size()),
+        "the file is truncated: copy it again");
+  };
   std::size_t done = 0;
   while (done < out.size()) {
     const auto wanted = unsigned(std::min(kChunk, out.size() - done));
     const int got = gzread(stream.get(), out.data() + done, wanted);
-    if (got <= 0)
-      return failure_of(
-          file, fmt::format("its data ends or is damaged after {} of {} bytes", done, out.size()),
-          "the file is truncated: copy it again");
+    if (got <= 0) return truncated(done);
     done += std::size_t(got);
     if (progress) progress(double(done) / double(out.size()));
   }
+  // One byte more, so that zlib comes to the checksum behind the last one wanted.
+  char beyond = 0;
+  int error = Z_OK;
+  gzread(stream.get(), &beyond, 1);
+  gzerror(stream.get(), &error);
+  if (error != Z_OK && error != Z_STREAM_END) return truncated(done);
   return std::nullopt;
 }
 

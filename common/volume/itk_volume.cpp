@@ -12,9 +12,14 @@
 #include <itkNrrdImageIO.h>
 #include <itkTIFFImageIO.h>
 #include <itkVTKImageIO.h>
+#include <nifti1_io.h>
 
 #include <algorithm>
 #include <array>
+#include <cstdarg>
+#include <iostream>
+#include <mutex>
+#include <sstream>
 
 #include "common/volume/dicom_series.h"
 #include "common/volume/file_names.h"
@@ -22,6 +27,14 @@
 #include "common/volume/nifti_header.h"
 #include "common/volume/slice_assembly.h"
 #include "common/volume/volume_checks.h"
+
+// libtiff as ITK carries it, under names of its own and without its headers. Weak: an ITK that was
+// built with the system's libtiff has no such names.
+extern "C" {
+using TiffHandler = void (*)(const char*, const char*, va_list);
+__attribute__((weak)) TiffHandler itk_TIFFSetErrorHandler(TiffHandler);
+__attribute__((weak)) TiffHandler itk_TIFFSetWarningHandler(TiffHandler);
+}
 
 namespace goldthread {
 namespace {
@@ -41,10 +54,12 @@ Reader make_reader() {
   return Io::New().GetPointer();
 }
 
+constexpr Format kNifti{
+    "NIfTI", {".nii", ".nii.gz", ".hdr", ".img"}, make_reader<itk::NiftiImageIO>, true};
 constexpr Format kTiff{"TIFF", {".tif", ".tiff"}, make_reader<itk::TIFFImageIO>, false};
 constexpr Format kDicom{"DICOM", {}, make_reader<itk::GDCMImageIO>, false};
 constexpr std::array<Format, 5> kFormats{
-    {{"NIfTI", {".nii", ".nii.gz", ".hdr", ".img"}, make_reader<itk::NiftiImageIO>, true},
+    {kNifti,
      {"NRRD", {".nrrd", ".nhdr"}, make_reader<itk::NrrdImageIO>, false},
      {"MetaImage", {".mha", ".mhd"}, make_reader<itk::MetaImageIO>, true},
      {"VTK", {".vtk"}, make_reader<itk::VTKImageIO>, false},
@@ -65,10 +80,52 @@ Failure not_readable(const fs::path& file, const Format& format, std::string rea
                     "the file is damaged or truncated, or its name ends wrongly");
 }
 
+// MetaIO writes its complaints to std::cerr and std::cout, and offers no other way. While one of
+// these lives, both are without effect; one at a time, since they belong to the process.
+class QuietStreams {
+ public:
+  QuietStreams()
+      : lock_(mutex()), error_(std::cerr.rdbuf(nullptr)), out_(std::cout.rdbuf(nullptr)) {}
+  ~QuietStreams() {
+    std::cerr.rdbuf(error_);  // clears the error state as well
+    std::cout.rdbuf(out_);
+  }
+  QuietStreams(const QuietStreams&) = delete;
+  QuietStreams& operator=(const QuietStreams&) = delete;
+
+ private:
+  static std::mutex& mutex() {
+    static std::mutex one;
+    return one;
+  }
+  std::lock_guard<std::mutex> lock_;
+  std::streambuf* error_;
+  std::streambuf* out_;
+};
+
+// The libraries' own switches for what they write.
+void silence_libraries() {
+  itk::Object::SetGlobalWarningDisplay(false);
+  nifti_set_debug_level(0);
+  if (itk_TIFFSetErrorHandler) itk_TIFFSetErrorHandler(nullptr);
+  if (itk_TIFFSetWarningHandler) itk_TIFFSetWarningHandler(nullptr);
+}
+
+void read_header(itk::ImageIOBase& io, const fs::path& file) {
+  const QuietStreams quiet;
+  io.SetFileName(file.string());
+  io.ReadImageInformation();
+}
+
+void read_pixels(itk::ImageIOBase& io, std::byte* to) {
+  const QuietStreams quiet;
+  io.Read(to);
+}
+
 // Calls `read`, and turns what it throws into a Failure.
 template <class Read>
 Result<LoadedVolume> guarded(const fs::path& file, const Format& format, Read read) {
-  itk::Object::SetGlobalWarningDisplay(false);
+  silence_libraries();
   try {
     return read();
   } catch (const itk::ExceptionObject& problem) {
@@ -137,8 +194,7 @@ struct OpenFile {
 Result<OpenFile> open(const fs::path& file, const Format& format) {
   OpenFile opened{format.make(), StoredType::kUInt8};
   itk::ImageIOBase& io = *opened.io;
-  io.SetFileName(file.string());
-  io.ReadImageInformation();
+  read_header(io, file);
   const auto stored = stored_type_of(io.GetComponentType());
   if (!stored)
     return failure_of(file, "its voxels are of a type that is not known", "convert it to float");
@@ -186,7 +242,7 @@ Result<std::unique_ptr<std::byte[]>> read_voxels(const fs::path& file, const For
   auto memory = allocate_voxels(file, opened.bytes_per_step() * steps);
   if (!memory) return memory;
   select_region(*opened.io, format.reads_parts);
-  opened.io->Read(memory->get());
+  read_pixels(*opened.io, memory->get());
   return memory;
 }
 
@@ -270,7 +326,7 @@ Result<LoadedVolume> read_slices(const std::vector<fs::path>& files, const Forma
       return *failure;
     pixels.resize(slice->bytes_per_step());
     select_region(*slice->io, false);
-    slice->io->Read(pixels.data());
+    read_pixels(*slice->io, pixels.data());
     if (auto failure = assembly.add(pixels, slice->type)) return *failure;
     if (options.progress) options.progress(double(i + 1) / double(files.size()));
   }
@@ -284,6 +340,8 @@ bool is_itk_file_name(const fs::path& file) { return format_of(file) != nullptr;
 Result<LoadedVolume> load_itk_file(const fs::path& file, const LoadOptions& options,
                                    bool header_only) {
   const Format& format = *format_of(file);
+  if (format.name == kNifti.name)
+    if (auto failure = check_nifti_header(file)) return *failure;
   return guarded(file, format, [&] { return read_file(file, format, options, header_only); });
 }
 

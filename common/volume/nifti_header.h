@@ -1,15 +1,20 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// Where the voxels of a NIfTI file begin, if they may be taken from it as they are; internal to
-// volume_io.
+// The NIfTI-1 header, read before ITK does: its library writes to stderr about what it refuses, and
+// cannot tell where voxels begin that may be taken as they are. Internal to volume_io.
 
 #include <cstdint>
 #include <filesystem>
 #include <optional>
 
+#include "common/base/result.h"
 #include "common/volume/stored_type.h"
 
 namespace goldthread {
+
+/// Whether the header of `file` (of its .hdr, for an .img) is one of NIfTI-1 or Analyze, in either
+/// byte order, with sizes above 0 and a type that the standard knows.
+std::optional<Failure> check_nifti_header(const std::filesystem::path& file);
 
 /// For a NIfTI-1 file with header and voxels in one, in this machine's byte order, of one component
 /// of `type`, and not to be rescaled: the number of bytes, once inflated, before its voxels.
