@@ -154,7 +154,7 @@ glm::dvec3 mix_colors(MapSpace space, const glm::dvec3& first, const glm::dvec3&
     case MapSpace::kDiverging:
       return mix_diverging(first, second, share);
     case MapSpace::kStep:
-      return share < 1 ? first : second;
+      return share > 0 ? second : first;
   }
   return first;
 }

@@ -14,7 +14,7 @@ enum class MapSpace : std::uint8_t {
   kHsvWrapped,  ///< hue goes the short way round
   kLab,         ///< CIE L*a*b*, D65
   kDiverging,   ///< Moreland, "Diverging Color Maps for Scientific Visualization", 2009
-  kStep         ///< the first colour up to the second
+  kStep         ///< the second colour from just after the first on, as VTK has it
 };
 
 /// The colour at `share` (0…1) of the way from `first` to `second`, in 0…1 each.

@@ -21,6 +21,8 @@ namespace {
 constexpr double kTolerance = 0.25 / 255;
 /// Curves are halved at most this often between two nodes; one with a jump ends here.
 constexpr int kMaxHalvings = 10;
+/// Of a step of colour, as a share of the whole map.
+constexpr double kStepWidth = 1e-9;
 constexpr Interval kAny{-kMaxValue, kMaxValue};
 
 // ---- Making curves piecewise linear ----
@@ -55,7 +57,8 @@ std::vector<ColorNode> linear_color_nodes(MapSpace space, const std::vector<Colo
     if (a.value == b.value || space == MapSpace::kRgb) {
       nodes.push_back(b);
     } else if (space == MapSpace::kStep) {
-      nodes.push_back({b.value, a.rgb});
+      // The step comes just after the node, so that data on the node still has its colour.
+      nodes.push_back({a.value + kStepWidth * (points.back().value - points.front().value), b.rgb});
       nodes.push_back(b);
     } else {
       const ColorCurve curve = [&](double t) { return mix_colors(space, a.rgb, b.rgb, t); };
