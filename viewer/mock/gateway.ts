@@ -137,15 +137,16 @@ class MockGateway {
     const { camera, editable, width, height } = sceneOf(this.scene_, 'scene');
     const { viewer, serial } = this.input_;
     const rows = rendered(camera, editable, width, height, spacing);
-    for (let row = rows.next(), count = 0; ; row = rows.next()) {
+    for (let row = rows.next(), rested = performance.now(); ; row = rows.next()) {
       if (row.done) {
         const fields = { picture: ++this.picture_, epoch, viewer, serial, width, height, spacing, final: spacing === 1 };
         this.publish(regionsOf(row.value, fields));
         this.spacing_ = spacing;
         return epoch === this.epoch_;
       }
-      if (++count % 16 === 0) {
+      if (performance.now() - rested > 8) {
         await new Promise((resolve) => setImmediate(resolve));
+        rested = performance.now();
         if (epoch !== this.epoch_ && spacing < 8) return false;
       }
     }

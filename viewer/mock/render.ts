@@ -7,15 +7,16 @@ import type { Editable } from '../src/scene';
 import { normalized, type Vec3 } from '../src/vector';
 import { sampleAt, volume } from './scene';
 
-const kStep = 2.5;
+/** Coarse levels march coarsely too, to keep up with the hand. */
+const stepOf = (spacing: number): number => (spacing > 2 ? 6 : 2.5);
 
 interface Tables { color: Vec3[]; opacity: Float32Array }
 
-function tablesOf({ volume: look }: Editable): Tables {
+function tablesOf({ volume: look }: Editable, step: number): Tables {
   const values = Array.from({ length: 256 }, (_, i) => i);
   const { transferFunction: tf } = look;
   const color = values.map((v) => colorAt(tf.color, v));
-  const opacity = Float32Array.from(values, (v) => 1 - (1 - opacityAt(tf.opacity, v)) ** (kStep / tf.unitDistance));
+  const opacity = Float32Array.from(values, (v) => 1 - (1 - opacityAt(tf.opacity, v)) ** (step / tf.unitDistance));
   return { color, opacity };
 }
 
@@ -31,7 +32,7 @@ function shade(editable: Editable, x: number, y: number, z: number, d: Vec3): [n
   return [shading.ambient + light * shading.diffuse * facing, light * shading.specular * facing ** shading.shininess];
 }
 
-function cast(editable: Editable, tables: Tables, o: Vec3, d: Vec3, near: number, far: number): Vec3 {
+function cast(editable: Editable, tables: Tables, o: Vec3, d: Vec3, near: number, far: number, step: number): Vec3 {
   let [r, g, b, through, most] = [0, 0, 0, 1, -1];
   const { mode, isosurfaces } = editable.volume;
   const add = (color: Vec3, alpha: number, x: number, y: number, z: number): void => {
@@ -43,7 +44,7 @@ function cast(editable: Editable, tables: Tables, o: Vec3, d: Vec3, near: number
     through *= 1 - alpha;
   };
   let before = -1;
-  for (let t = near; t < far && through > 0.01; t += kStep) {
+  for (let t = near; t < far && through > 0.01; t += step) {
     const [x, y, z] = [o[0] + t * d[0], o[1] + t * d[1], o[2] + t * d[2]];
     const value = sampleAt(x, y, z);
     if (value >= 0) {
@@ -67,7 +68,8 @@ function cast(editable: Editable, tables: Tables, o: Vec3, d: Vec3, near: number
 export function* rendered(camera: Camera, editable: Editable, width: number, height: number, spacing: number):
   Generator<void, Uint8Array> {
   const pixels = new Uint8Array(width * height * 3);
-  const tables = tablesOf(editable);
+  const step = stepOf(spacing);
+  const tables = tablesOf(editable, step);
   const { right, up } = frame(camera);
   const forward = direction(camera);
   const half = Math.tan((camera.fovy * Math.PI) / 360);
@@ -78,7 +80,7 @@ export function* rendered(camera: Camera, editable: Editable, width: number, hei
       const u = ((2 * (x + spacing / 2) - width) / height) * half;
       const v = (1 - (2 * (y + spacing / 2)) / height) * half;
       const ray = normalized([0, 1, 2].map((i) => forward[i]! + u * right[i]! + v * up[i]!) as unknown as Vec3);
-      const color = cast(editable, tables, camera.position, ray, near, far).map((c) => Math.min(c, 1) * 255);
+      const color = cast(editable, tables, camera.position, ray, near, far, step).map((c) => Math.min(c, 1) * 255);
       for (let j = y; j < Math.min(y + spacing, height); ++j) {
         for (let i = x; i < Math.min(x + spacing, width); ++i) pixels.set(color, (j * width + i) * 3);
       }

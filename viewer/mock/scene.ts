@@ -37,13 +37,17 @@ for (let k = 0, at = 0; k < kEdge; ++k) {
 const histogram = new Array<number>(256).fill(0);
 for (const value of voxels) ++histogram[Math.round(value)]!;
 
-/** The field at a point in millimetres: nearest voxel, or -1 outside. */
+/** The field at a point in millimetres, trilinear, or -1 outside. */
 export function sampleAt(x: number, y: number, z: number): number {
-  const i = Math.round((x + kHalf) / kSpacing);
-  const j = Math.round((y + kHalf) / kSpacing);
-  const k = Math.round((z + kHalf) / kSpacing);
-  if (i < 0 || j < 0 || k < 0 || i >= kEdge || j >= kEdge || k >= kEdge) return -1;
-  return voxels[(k * kEdge + j) * kEdge + i]!;
+  const [u, v, w] = [(x + kHalf) / kSpacing, (y + kHalf) / kSpacing, (z + kHalf) / kSpacing];
+  const last = kEdge - 1;
+  if (!(u >= 0 && v >= 0 && w >= 0 && u < last && v < last && w < last)) return -1;
+  const [i, j, k] = [u | 0, v | 0, w | 0];
+  const [a, b, c] = [u - i, v - j, w - k];
+  const at = (k * kEdge + j) * kEdge + i;
+  const row = (from: number): number => voxels[from]! + a * (voxels[from + 1]! - voxels[from]!);
+  const plane = (from: number): number => row(from) + b * (row(from + kEdge) - row(from));
+  return plane(at) + c * (plane(at + kEdge * kEdge) - plane(at));
 }
 
 export const volume = {

@@ -37,6 +37,8 @@ export class Interactor {
       canvas_.addEventListener(type, (event) => this.up(event));
     }
     canvas_.addEventListener('wheel', (event) => this.wheel(event), { passive: false });
+    // The middle button would start the browser's own scrolling.
+    canvas_.addEventListener('mousedown', (event) => { if (event.button === 1) event.preventDefault(); });
     canvas_.addEventListener('contextmenu', (event) => event.preventDefault());
     canvas_.addEventListener('keydown', (event) => this.key(event));
   }
@@ -50,9 +52,7 @@ export class Interactor {
     if (this.pointers_.size === 0) this.gesture_ = gestureOf(event);
     this.pointers_.set(event.pointerId, { x: event.clientX, y: event.clientY });
     this.canvas_.setPointerCapture(event.pointerId);
-    this.canvas_.focus({ preventScroll: true });
     this.canvas_.dataset.gesture = this.gesture_;
-    event.preventDefault();
   }
 
   private up(event: PointerEvent): void {

@@ -54,7 +54,7 @@ function numbersOf(session: Session): string {
 }
 
 function messageBox(session: Session, connection: Connection, useToken: (token: string) => void): HTMLElement {
-  const title = el('h2');
+  const title = el('h2', { role: 'alert' });
   const detail = el('p');
   const progress = el('progress', { max: 1 });
   const again = button('Connect now', 'Try to connect again now', () => connection.retry());
@@ -64,7 +64,7 @@ function messageBox(session: Session, connection: Connection, useToken: (token: 
     event.preventDefault();
     if (token.value.trim()) useToken(token.value.trim());
   });
-  const box = el('div', { class: 'message', role: 'alert' }, title, detail, progress, again, form);
+  const box = el('div', { class: 'message' }, title, detail, progress, again, form);
   const update = (): void => {
     const state = describe(session, connection);
     box.hidden = state === null;

@@ -226,9 +226,10 @@ export class Session {
       case 'refused': {
         this.flow_.refused(message.serial);
         const { where, what, mend } = message;
+        if (!this.connected) this.failed = { where, what, mend };
         this.refusal = { control: this.edits?.refuse(message.serial) ?? '', where, what, mend };
         this.changed.emit('scene');
-        return this.changed.emit('refused');
+        return this.changed.emit(this.connected ? 'refused' : 'connection');
       }
       case 'status':
         this.status = message;

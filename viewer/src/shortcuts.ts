@@ -22,7 +22,7 @@ export function installShortcuts(session: Session, actions: ShortcutActions): vo
       else return;
     } else if (event.key === '?') actions.help();
     else if (key === 'r') session.frameVolume();
-    else if (key === 'home' && session.original) session.moveCamera(session.original.camera);
+    else if (key === 'home' && session.original && !(event.target instanceof HTMLInputElement)) session.moveCamera(session.original.camera);
     else if (key === 'p') actions.fold();
     else if (key === 's') actions.screenshot();
     else return;

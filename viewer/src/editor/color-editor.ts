@@ -24,10 +24,11 @@ export class ColorEditor {
     (value) => this.report(movedColor(this.nodes, this.selected_, value, [-Infinity, Infinity])));
   private readonly color_ = colorInput('Colour of the selected node',
     (rgb) => this.report(recolored(this.nodes, this.selected_, rgb)));
-  private readonly remove_ = button('Delete', 'Delete the selected colour node (Delete key)', () => this.drop(this.selected_));
+  private readonly remove_ = button('−', 'Delete the selected colour node (Delete key)', () => this.drop(this.selected_));
   private tf_: TransferFunction | null = null;
   private selected_ = 0;
   private width_ = 300;
+  /** Frozen while a node is dragged, so that the axis does not run away under the hand. */
   private domain_: [number, number] = [0, 1];
 
   constructor(private readonly report_: (nodes: ColorNode[]) => void) {
@@ -46,7 +47,7 @@ export class ColorEditor {
     });
     this.element = el('div', { class: 'color-editor' }, this.root_,
       el('div', { class: 'node-entry' }, el('label', {}, 'Value ', this.value_.input), el('label', {}, 'Colour ', this.color_.element),
-        this.remove_, button('Add', 'Add a colour node beside the selected one (Insert key, or double-click on the bar)',
+        this.remove_, button('+', 'Add a colour node beside the selected one (Insert key, or double-click on the bar)',
           () => this.addAt(beside(this.nodes, this.selected_, this.domain_)))));
     new ResizeObserver(() => this.resize()).observe(this.element);
   }
@@ -54,7 +55,7 @@ export class ColorEditor {
   show(tf: TransferFunction, volume: VolumeInfo, enabled: boolean): void {
     this.tf_ = tf;
     this.handles_.enabled = enabled;
-    this.domain_ = domainOf(volume.range, tf);
+    if (!this.handles_.dragging) this.domain_ = domainOf(volume.range, tf);
     this.selected_ = Math.min(this.selected_, tf.color.length - 1);
     this.draw();
   }

@@ -31,6 +31,7 @@ export interface HandleEvents {
 export class NodeHandles {
   readonly group = svg('g');
   private shapes_: SVGGElement[] = [];
+  private drags_ = 0;
   enabled = true;
 
   constructor(private readonly root_: SVGSVGElement, private readonly shape_: () => SVGElement,
@@ -49,6 +50,11 @@ export class NodeHandles {
     });
   }
 
+  /** A node is under the hand. */
+  get dragging(): boolean {
+    return this.drags_ > 0;
+  }
+
   focus(index: number): void {
     this.shapes_[index]?.focus();
   }
@@ -65,6 +71,8 @@ export class NodeHandles {
       const box = this.root_.getBoundingClientRect();
       this.events_.drag(index(), event.clientX - box.x, event.clientY - box.y);
     });
+    shape.addEventListener('gotpointercapture', () => { ++this.drags_; });
+    shape.addEventListener('lostpointercapture', () => { this.drags_ = Math.max(0, this.drags_ - 1); });
     shape.addEventListener('dblclick', (event) => {
       event.stopPropagation();
       if (this.enabled) this.events_.open(index());

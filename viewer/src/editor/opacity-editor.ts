@@ -25,7 +25,7 @@ export class OpacityEditor {
   private readonly handles_: NodeHandles;
   private readonly value_ = numberInput('Data value of the selected opacity node', {}, (v) => this.type(v, null));
   private readonly alpha_ = numberInput('Opacity of the selected node', { low: 0, high: 1 }, (a) => this.type(null, a));
-  private readonly remove_ = button('Delete', 'Delete the selected opacity node (Delete key)', () => this.drop(this.selected_));
+  private readonly remove_ = button('−', 'Delete the selected opacity node (Delete key)', () => this.drop(this.selected_));
   private tf_: TransferFunction | null = null;
   private volume_: VolumeInfo | null = null;
   private selected_ = 0;
@@ -42,11 +42,11 @@ export class OpacityEditor {
       add: (i) => this.addAt(beside(this.nodes, i, this.domain_)),
       open: (i) => this.drop(i),
     });
-    this.root_.append(svg('defs', {}, this.gradient_), this.histogram_, this.grid_, this.area_, this.curve_, this.handles_.group);
+    this.root_.append(svg('defs', {}, this.gradient_), this.histogram_, this.area_, this.grid_, this.curve_, this.handles_.group);
     this.root_.addEventListener('dblclick', (event) => this.doubleClick(event));
     this.element = el('div', { class: 'opacity-editor' }, this.root_,
       el('div', { class: 'node-entry' }, el('label', {}, 'Value ', this.value_.input), el('label', {}, 'Opacity ', this.alpha_.input),
-        this.remove_, button('Add', 'Add an opacity node beside the selected one (Insert key, or double-click in the plot)',
+        this.remove_, button('+', 'Add an opacity node beside the selected one (Insert key, or double-click in the plot)',
           () => this.addAt(beside(this.nodes, this.selected_, this.domain_)))));
     new ResizeObserver(() => this.resize()).observe(this.element);
   }
@@ -55,7 +55,7 @@ export class OpacityEditor {
     this.tf_ = tf;
     this.volume_ = volume;
     this.handles_.enabled = enabled;
-    this.domain_ = domainOf(volume.range, tf);
+    if (!this.handles_.dragging) this.domain_ = domainOf(volume.range, tf);
     this.selected_ = Math.min(this.selected_, tf.opacity.length - 1);
     this.draw();
   }
@@ -139,7 +139,7 @@ export class OpacityEditor {
 
   private gridLine(alpha: number): SVGElement[] {
     const y = yOf(this.plot, alpha);
-    const label = svg('text', { x: this.width_ - 2, y: y + (alpha === 1 ? 9 : -2), 'text-anchor': 'end' });
+    const label = svg('text', { x: kMargin + 4, y: y + (alpha === 1 ? 10 : -2) });
     label.textContent = String(alpha);
     return [svg('line', { x1: kMargin, x2: this.width_ - kMargin, y1: y, y2: y }), label];
   }

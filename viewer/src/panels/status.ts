@@ -25,7 +25,7 @@ export function statusPanel(session: Session): HTMLElement[] {
     write('Pictures', `${shown(session.rate.perSecond(performance.now()), 3)} per s shown${status ? `, ${shown(status.framesPerSecond, 3)} rendered` : ''}`);
     write('Latency', median === null ? '–' : `${median.toFixed(0)} ms median, ${p95!.toFixed(0)} ms p95`);
     if (volume) write('Volume', `${volume.name}, ${volume.size.join(' × ')}, ${volume.type}, ${volume.range.map((v) => shown(v)).join(' … ')}`);
-    write('Server', session.version ? `Goldthread ${session.version}, page ${session.viewer} of ${session.viewers}` : '–');
+    write('Server', session.version ? `Goldthread ${session.version}, this is page ${session.viewer}, ${session.viewers} connected` : '–');
     spark.show(latencies.recent);
     if (!status) return;
     write('Sample spacing', `${shown(status.spacing)} px${picture?.final ? ', final' : ''}`);
@@ -48,7 +48,7 @@ export function statusPanel(session: Session): HTMLElement[] {
 
 function sparkline(): { element: SVGSVGElement; show: (values: readonly number[]) => void } {
   const line = svg('path', { class: 'spark' });
-  const top = svg('text', { x: 2, y: 10 });
+  const top = svg('text', { x: '99%', y: 11, 'text-anchor': 'end' });
   const element = svg('svg', { viewBox: `0 0 ${kSparkWidth} ${kSparkHeight}`, preserveAspectRatio: 'none', class: 'sparkline', 'aria-hidden': 'true' }, line);
   const frame = svg('svg', { class: 'spark-box', height: kSparkHeight, 'aria-hidden': 'true' }, element, top);
   return {
