@@ -1,0 +1,291 @@
+// SPDX-License-Identifier: Apache-2.0
+// The promised command line: every option, its variable, the precedence, and each mistake's line.
+#include "common/cli/options.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <map>
+
+#include "common/cli/option_table.h"
+
+namespace goldthread {
+namespace {
+
+using testing::HasSubstr;
+using testing::Not;
+using Words = std::vector<std::string>;
+using Variables = std::map<std::string, std::string>;
+
+Result<CommandLine> parse(const Words& words, const Variables& variables = {}) {
+  return parse_command_line(words, [&](const std::string& name) -> std::optional<std::string> {
+    const auto found = variables.find(name);
+    if (found == variables.end()) return {};
+    return found->second;
+  });
+}
+
+Words operator+(Words words, const Words& more) {
+  words.insert(words.end(), more.begin(), more.end());
+  return words;
+}
+
+const Words kRender = {"render", "s.json", "-o", "a.png"};
+const Words kServe = {"serve", "s.json"};
+
+Options options(const Words& words, const Variables& variables = {}) {
+  const auto line = parse(words, variables);
+  EXPECT_TRUE(line.ok()) << line.failure().line();
+  if (!line || !std::holds_alternative<Options>(*line)) return {};
+  return std::get<Options>(*line);
+}
+
+std::string refusal(const Words& words, const Variables& variables = {}) {
+  const auto line = parse(words, variables);
+  if (line) return "accepted";
+  EXPECT_EQ(line.failure().status, ExitStatus::kUsage);
+  return line.failure().line().substr(std::string("goldthread: error: ").size());
+}
+
+std::string text(const Words& words) {
+  const auto line = parse(words);
+  EXPECT_TRUE(line.ok()) << line.failure().line();
+  if (!line || !std::holds_alternative<TextOutcome>(*line)) return {};
+  return std::get<TextOutcome>(*line).text;
+}
+
+TEST(CommandLine, DefaultsAreThePromisedOnes) {
+  const Options render = options(kRender);
+  EXPECT_EQ(render.command, Command::kRender);
+  EXPECT_EQ(render.input, "s.json");
+  EXPECT_EQ(render.output, "a.png");
+  EXPECT_FALSE(render.size || render.step_mm || render.workers || render.threads ||
+               render.samples || render.time_s || render.orbit || render.token || render.report);
+  EXPECT_EQ(render.compositors, 1);
+  EXPECT_EQ(render.tile_px, 64);
+  EXPECT_EQ(render.schedule, Schedule::kSquares);
+  EXPECT_EQ(render.sampling, Sampling::kSubdivision);
+  EXPECT_EQ(render.error, 0.5);
+  EXPECT_EQ(render.host, "127.0.0.1");
+  EXPECT_EQ(render.port, 8080);
+  EXPECT_EQ(render.log_level, LogLevel::kInfo);
+}
+
+TEST(CommandLine, EveryOptionOfRenderIsRead) {
+  const Options o = options(
+      {"render",        "--size",      "800x600",  "--workers",  "3",          "--threads=4",
+       "--compositors", "2",           "--tile",   "32",         "--schedule", "rows",
+       "--sampling",    "every-pixel", "--error",  "1.5",        "--samples",  "1",
+       "--time",        "2.5",         "--step",   "0.25",       "--update",   "100",
+       "--orbit",       "12,90",       "--data",   "replicated", "--report",   "r.json",
+       "--log-level",   "debug",       "--output", "f%03d.exr",  "s.json"});
+  EXPECT_EQ(o.input, "s.json");
+  EXPECT_EQ(o.output, "f%03d.exr");
+  EXPECT_EQ(o.size, (ImageSize{800, 600}));
+  EXPECT_EQ(o.workers, 3);
+  EXPECT_EQ(o.threads, 4);
+  EXPECT_EQ(o.compositors, 2);
+  EXPECT_EQ(o.tile_px, 32);
+  EXPECT_EQ(o.schedule, Schedule::kRows);
+  EXPECT_EQ(o.sampling, Sampling::kEveryPixel);
+  EXPECT_EQ(o.error, 1.5);
+  EXPECT_EQ(o.samples, 1);
+  EXPECT_EQ(o.time_s, 2.5);
+  EXPECT_EQ(o.step_mm, 0.25);
+  EXPECT_EQ(o.orbit, (Orbit{12, 90}));
+  EXPECT_EQ(o.report, "r.json");
+  EXPECT_EQ(o.log_level, LogLevel::kDebug);
+}
+
+TEST(CommandLine, ServeReadsWhereToListen) {
+  const Options o =
+      options({"serve", "s.json", "--host", "0.0.0.0", "--port", "0", "--token", "a-B_9"});
+  EXPECT_EQ(o.command, Command::kServe);
+  EXPECT_EQ(o.host, "0.0.0.0");
+  EXPECT_EQ(o.port, 0);
+  EXPECT_EQ(o.token, "a-B_9");
+}
+
+TEST(CommandLine, InfoNeedsAFileAlone) {
+  EXPECT_EQ(options({"info", "head.nii"}).command, Command::kInfo);
+  EXPECT_EQ(options({"info", "head.nii"}).input, "head.nii");
+}
+
+TEST(CommandLine, AnOrbitTurnsFullCircleUnlessToldOtherwise) {
+  EXPECT_EQ(options({"render", "s", "-o", "%d.png", "--orbit", "8"}).orbit, (Orbit{8, 360}));
+  EXPECT_EQ(options({"render", "s", "-o", "%d.png", "--orbit", "8,-45.5"}).orbit,
+            (Orbit{8, -45.5}));
+}
+
+TEST(CommandLine, TheOptionGoesBeforeTheVariableBeforeTheDefault) {
+  const Variables variables = {{"GOLDTHREAD_THREADS", "7"}, {"GOLDTHREAD_SIZE", "20x10"}};
+  EXPECT_FALSE(options(kRender).threads);
+  EXPECT_EQ(options(kRender, variables).threads, 7);
+  EXPECT_EQ(options(kRender, variables).size, (ImageSize{20, 10}));
+  EXPECT_EQ(options(kRender + Words{"--threads", "8"}, variables).threads, 8);
+}
+
+TEST(CommandLine, EveryOptionHasItsVariable) {
+  for (const OptionRow& row : option_table()) {
+    std::string name = "GOLDTHREAD_";
+    for (const char c : row.name) name += c == '-' ? '_' : static_cast<char>(std::toupper(c));
+    bool asked = false;
+    const bool serves = row.commands & command_bit(Command::kServe);
+    const Words words = serves ? kServe : Words{"render", "s.json"};
+    (void)parse_command_line(words, [&](const std::string& variable) -> std::optional<std::string> {
+      asked |= variable == name;
+      return {};
+    });
+    EXPECT_TRUE(asked) << name;
+  }
+}
+
+TEST(CommandLine, VariablesOfOtherCommandsAndEmptyOnesDoNotMatter) {
+  EXPECT_EQ(options(kRender, {{"GOLDTHREAD_PORT", "x"}}).port, 8080);
+  EXPECT_FALSE(options(kRender, {{"GOLDTHREAD_THREADS", ""}}).threads);
+}
+
+TEST(CommandLine, ABadVariableIsNamed) {
+  EXPECT_EQ(refusal(kRender, {{"GOLDTHREAD_LOG_LEVEL", "inf"}}),
+            "GOLDTHREAD_LOG_LEVEL: \"inf\" is none of error, warn, info, debug (did you mean "
+            "\"info\"?)");
+}
+
+TEST(CommandLine, AVariableThatTheLineOverridesIsNotRead) {
+  EXPECT_EQ(options(kRender + Words{"--threads", "2"}, {{"GOLDTHREAD_THREADS", "x"}}).threads, 2);
+}
+
+TEST(CommandLine, TheLastOfARepeatedOptionHolds) {
+  EXPECT_EQ(options(kRender + Words{"--threads", "2", "--threads", "3"}).threads, 3);
+}
+
+TEST(CommandLine, HelpAndVersionAreTexts) {
+  EXPECT_THAT(text({"--version"}), testing::StartsWith("goldthread "));
+  const std::string help = text({"--help"});
+  for (const char* word : {"render", "serve", "info", "bench", "SCENE", "Examples:", "mpirun",
+                           "GOLDTHREAD_THREADS", "Exit status"}) {
+    EXPECT_THAT(help, HasSubstr(word));
+  }
+}
+
+TEST(CommandLine, HelpOfACommandListsItsOptionsOnly) {
+  const std::string render = text({"render", "--help"}), serve = text({"serve", "-h"});
+  EXPECT_THAT(render, HasSubstr("Usage: goldthread render"));
+  for (const OptionRow& row : option_table()) {
+    const std::string flag = "--" + std::string(row.name);
+    const auto lists = [&](const std::string& help) {
+      const std::string options_part = help.substr(0, help.find("Examples:"));
+      return options_part.find(flag) != std::string::npos;
+    };
+    EXPECT_EQ(lists(render), (row.commands & command_bit(Command::kRender)) != 0) << flag;
+    EXPECT_EQ(lists(serve), (row.commands & command_bit(Command::kServe)) != 0) << flag;
+  }
+}
+
+TEST(CommandLine, UnknownOptionsAndCommandsNameTheNearest) {
+  EXPECT_EQ(refusal(kRender + Words{"--thread", "4"}),
+            "--thread: unknown option (did you mean \"--threads\"?)");
+  EXPECT_EQ(refusal(kRender + Words{"--eror=4"}),
+            "--eror: unknown option (did you mean \"--error\"?)");
+  EXPECT_EQ(refusal(kRender + Words{"-x"}), "-x: unknown option (see goldthread --help)");
+  EXPECT_EQ(refusal({"rendr", "s.json"}), "rendr: unknown command (did you mean \"render\"?)");
+  EXPECT_EQ(refusal({"--vresion"}), "--vresion: unknown option (did you mean \"--version\"?)");
+}
+
+TEST(CommandLine, WhatIsMissingIsNamed) {
+  EXPECT_EQ(refusal({}), "command line: no command is given (render, serve or info; see --help)");
+  EXPECT_EQ(refusal({"render"}), "command line: no SCENE is given (name a scene or volume file)");
+  EXPECT_EQ(refusal({"render", "s.json"}), "--output: is missing (say -o image.png)");
+  EXPECT_EQ(refusal(kRender + Words{"--size"}),
+            "--size: its value is missing (give the option a value)");
+}
+
+TEST(CommandLine, WhatDoesNotApplyIsNamed) {
+  EXPECT_EQ(refusal(kServe + Words{"--orbit", "4"}),
+            "--orbit: does not apply to serve (leave it out)");
+  EXPECT_EQ(refusal(kRender + Words{"--port", "4"}),
+            "--port: does not apply to render (leave it out)");
+  EXPECT_EQ(refusal({"info", "a", "--size", "1x1"}),
+            "--size: does not apply to info (leave it out)");
+  EXPECT_EQ(refusal({"--threads", "4", "render", "s.json"}),
+            "--threads: needs a command first (render, serve or info)");
+  EXPECT_EQ(refusal({"render", "a", "b", "-o", "c.png"}),
+            "b: one input too many (quote a name that has spaces)");
+}
+
+TEST(CommandLine, BadValuesAreNamed) {
+  const auto of = [](const std::string& option, const std::string& value) {
+    return refusal(kRender + Words{option, value});
+  };
+  for (const char* value : {"0", "-1", "x", "", "1.5", "1e3", " 4", "99999999999999999999"}) {
+    EXPECT_THAT(of("--threads=" + std::string(value), "--error=1"), HasSubstr("--threads: "))
+        << value;
+  }
+  EXPECT_EQ(of("--threads", "0"),
+            "--threads: \"0\" is not a whole number from 1 to 1024 (give one from 1 to 1024)");
+  EXPECT_EQ(of("--error", "nan"),
+            "--error: \"nan\" is not a number from 0 to 255 (give one from 0 to 255)");
+  EXPECT_THAT(of("--step", "-1"), HasSubstr("--step: \"-1\" is not a number"));
+  EXPECT_THAT(of("--time", "0"), HasSubstr("--time: \"0\" is not a number"));
+  for (const char* size :
+       {"5", "x", "5x", "x5", "0x5", "5x0", "5x5x5", "16385x1", "-1x5", "5 x5"}) {
+    EXPECT_THAT(of("--size", size), HasSubstr("is not an image size (give WIDTHxHEIGHT")) << size;
+  }
+  for (const char* orbit : {"0", "x", "3,", ",3", "3,x", "3,4,5", "3,inf"}) {
+    EXPECT_THAT(of("--orbit", orbit), HasSubstr("--orbit: ")) << orbit;
+  }
+  EXPECT_EQ(of("--schedule", "row"),
+            "--schedule: \"row\" is none of squares, rows (did you mean \"rows\"?)");
+  EXPECT_THAT(refusal(kServe + Words{"--port", "65536"}), HasSubstr("--port: \"65536\""));
+}
+
+TEST(CommandLine, ABadTokenIsNotShown) {
+  EXPECT_EQ(refusal(kServe + Words{"--token", "se cret"}),
+            "--token: must be 1 to 128 letters, digits, - or _ (leave it out for a random one)");
+}
+
+TEST(CommandLine, TheOutputMustNameAFormat) {
+  EXPECT_EQ(refusal({"render", "s", "-o", "a.xyz"}),
+            "a.xyz: no image format is known for \".xyz\" (write .png, .exr, .tif or .jpg)");
+}
+
+TEST(CommandLine, ASequenceNeedsAPattern) {
+  EXPECT_EQ(refusal(kRender + Words{"--orbit", "4"}),
+            "a.png: has no place for the frame's number (write one %d or %04d where the frame's "
+            "number goes)");
+  EXPECT_EQ(options(kRender + Words{"--orbit", "1"}).output, "a.png");
+}
+
+TEST(CommandLine, WhatIsStillToComeIsRefusedByName) {
+  const auto of = [](const std::string& option, const std::string& value) {
+    return refusal(kRender + Words{option, value});
+  };
+  EXPECT_EQ(of("--sampling", "adaptive"),
+            "--sampling: adaptive sampling is not in this version (use subdivision)");
+  EXPECT_EQ(of("--samples", "2"),
+            "--samples: more than one sample per pixel is not in this version (use --samples 1)");
+  EXPECT_EQ(of("--update", "50"),
+            "--update: partial updating is not in this version (use --update 100)");
+  EXPECT_EQ(of("--update", "25"),
+            "--update: partial updating is not in this version (use --update 100)");
+  EXPECT_EQ(of("--bypass", "worker"),
+            "--bypass: by-passing roles is not in this version (leave --bypass out)");
+  EXPECT_EQ(of("--data", "slabs:4"),
+            "--data: data in slabs is not in this version (use --data replicated)");
+  for (const std::string subject : {"error", "throughput", "balance", "scale"}) {
+    EXPECT_EQ(refusal({"bench", subject, "-o", "dir"}),
+              "bench: measuring " + subject + " is not in this version (see goldthread --help)");
+  }
+  EXPECT_EQ(refusal({"bench", "x"}),
+            "bench: needs a subject (error, throughput, balance or scale)");
+}
+
+TEST(CommandLine, HostileWordsStayOnOneLine) {
+  EXPECT_THAT(refusal(kRender + Words{"--a\n\x1b[31m"}), Not(HasSubstr("\n")));
+  EXPECT_THAT(refusal(kRender + Words{"--threads", "\n\x1b"}), Not(HasSubstr("\n")));
+  EXPECT_THAT(refusal({"\nx"}), Not(HasSubstr("\n")));
+  EXPECT_LT(refusal(kRender + Words{"--" + std::string(1000000, 'x')}).size(), 300u);
+}
+
+}  // namespace
+}  // namespace goldthread
