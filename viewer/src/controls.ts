@@ -19,15 +19,14 @@ interface NumberOptions {
   readonly unit?: string;
 }
 
-const busy = (input: HTMLElement): boolean => document.activeElement === input;
-
 /** A bare number input that reports a finite, bounded number when it is committed. */
 export function numberInput(label: string, options: NumberOptions, report: (value: number) => void):
   { input: HTMLInputElement; show: (value: number) => void } {
   const { low = -Infinity, high = Infinity } = options;
   const input = el('input', { type: 'text', inputMode: 'decimal', class: 'number', aria: { label }, autocomplete: 'off' });
   let last = 0;
-  const show = (value: number): void => { last = value; input.value = shown(value, 6); };
+  let typing = false;
+  const show = (value: number): void => { last = value; typing = false; input.value = shown(value, 6); };
   const commit = (): void => {
     const value = Number(input.value.replace(',', '.'));
     if (input.value.trim() === '' || !Number.isFinite(value)) return show(last);
@@ -36,6 +35,7 @@ export function numberInput(label: string, options: NumberOptions, report: (valu
     show(bounded);
     report(bounded);
   };
+  input.addEventListener('input', () => { typing = true; });
   input.addEventListener('change', commit);
   input.addEventListener('keydown', (event) => {
     if (event.key === 'Escape') show(last);
@@ -46,7 +46,7 @@ export function numberInput(label: string, options: NumberOptions, report: (valu
     input.value = shown(last + stride, 6);
     commit();
   });
-  return { input, show: (value) => { if (!busy(input) || input.value === '') show(value); else last = value; } };
+  return { input, show: (value) => { if (typing) last = value; else show(value); } };
 }
 
 export function numberField(label: string, options: NumberOptions, report: (value: number) => void): Control<number> {

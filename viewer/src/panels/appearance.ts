@@ -22,8 +22,9 @@ export function appearancePanel(session: Session): HTMLElement[] {
   };
   const mode = segmented<Mode>('Mode', kModes, (value) => session.edit({ volume: { mode: value } }, 'mode'));
   const presets = presetMenu(session);
-  const opacity = new OpacityEditor((nodes) => changeTf({ opacity: nodes }, 'opacity'));
-  const color = new ColorEditor((nodes) => changeTf({ color: nodes }, 'color'));
+  // The count in a control's name makes adding and removing a node steps of their own for undo.
+  const opacity = new OpacityEditor((nodes) => changeTf({ opacity: nodes }, `opacity.${nodes.length}`));
+  const color = new ColorEditor((nodes) => changeTf({ color: nodes }, `color.${nodes.length}`));
   const distance = numberField('Unit distance', { low: 1e-6, high: 1e6, unit: 'mm' },
     (unitDistance) => changeTf({ unitDistance }, 'unitDistance'));
   distance.element.title = 'The length over which an opacity is reached: smaller is denser';
