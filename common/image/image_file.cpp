@@ -1,13 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "common/image/image_file.h"
 
+#include <OpenImageIO/filesystem.h>
 #include <OpenImageIO/imageio.h>
 #include <fmt/format.h>
-#include <unistd.h>
 
-#include <atomic>
+#include <string_view>
 
 #include "common/base/text.h"
+#include "common/image/whole_file.h"
 
 namespace goldthread {
 namespace {
@@ -19,37 +20,6 @@ namespace fs = std::filesystem;
                     "check the directory, its permissions and the free space",
                     ExitStatus::kClusterFailed});
 }
-
-/// A file beside the real one that vanishes unless it is renamed to it.
-class PendingFile {
- public:
-  explicit PendingFile(const fs::path& target) : target_(target) {
-    // The extension stays last, because the format follows it.
-    static std::atomic<unsigned> serial{0};
-    const std::string name = fmt::format(".{}.{}.{}.part{}", target.stem().string(), ::getpid(),
-                                         serial++, target.extension().string());
-    path_ = target.parent_path() / name;
-  }
-  ~PendingFile() {
-    std::error_code ignored;
-    if (!kept_) fs::remove(path_, ignored);
-  }
-  PendingFile(const PendingFile&) = delete;
-  PendingFile& operator=(const PendingFile&) = delete;
-
-  const fs::path& path() const { return path_; }
-  void keep() {
-    std::error_code error;
-    fs::rename(path_, target_, error);
-    if (error) fail(target_, "cannot be put in place: " + error.message());
-    kept_ = true;
-  }
-
- private:
-  fs::path target_;
-  fs::path path_;
-  bool kept_ = false;
-};
 
 bool keeps_named_texts(const OIIO::ImageOutput& output) {
   const std::string format = output.format_name();
@@ -70,18 +40,27 @@ void add_metadata(OIIO::ImageSpec& spec, const ImageMetadata& metadata, bool nam
 
 void write(const fs::path& path, const OIIO::ImageSpec& pixels_spec, OIIO::TypeDesc type,
            const void* pixels, const ImageMetadata& metadata) {
-  PendingFile pending(path);
-  const auto output = OIIO::ImageOutput::create(pending.path().string());
+  const auto output = OIIO::ImageOutput::create(path.string());
   if (!output) fail(path, "no writer for this format: " + OIIO::geterror());
   OIIO::ImageSpec spec = pixels_spec;
   add_metadata(spec, metadata, keeps_named_texts(*output));
-  if (!output->open(pending.path().string(), spec)) {
-    fail(path, "cannot be written: " + output->geterror());
+  const auto encode = [&](const fs::path& target) {
+    if (!output->open(target.string(), spec) || !output->write_image(type, pixels) ||
+        !output->close()) {
+      fail(path, "cannot be written: " + output->geterror());
+    }
+  };
+  if (std::string_view(output->format_name()) == "tiff") {
+    // Version 2.4 cannot write TIFF into memory; straight to disk its errors are reported.
+    write_whole_file(path, encode);
+    return;
   }
-  if (!output->write_image(type, pixels) || !output->close()) {
-    fail(path, "cannot be written: " + output->geterror());
-  }
-  pending.keep();
+  // Into memory first: on a full disk the PNG writer reports success and the JPEG writer ends the
+  // process.
+  OIIO::Filesystem::IOVecOutput memory;
+  output->set_ioproxy(&memory);
+  encode(path);
+  write_whole_file(path, memory.buffer());
 }
 
 std::size_t pixel_count(ImageSize size) {
