@@ -11,10 +11,6 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-std::shared_ptr<const std::string> shared(std::string text) {
-  return std::make_shared<const std::string>(std::move(text));
-}
-
 Json message_of_ours(const std::string& text) {
   Json json = Json::parse(text, nullptr, /*allow_exceptions=*/false);
   if (!json.is_object() || !json.contains("type") || !json["type"].is_string()) {
@@ -64,122 +60,6 @@ bool Session::greeted(Viewer viewer) const {
   return found != pages_.end() && found->second.stage != Stage::kConnected;
 }
 
-// ---- what pages say
-
-void Session::receive_text(Viewer viewer, std::string_view text) {
-  const auto found = pages_.find(viewer);
-  if (found == pages_.end() || found->second.stage >= Stage::kClosing) return;
-  const Result<page::Message> message = page::decode(text);
-  if (!message) {
-    close(viewer, kPolicy, message.failure().where + " " + message.failure().what);
-    return;
-  }
-  if (found->second.stage == Stage::kConnected && !std::holds_alternative<page::Hello>(*message)) {
-    close(viewer, kPolicy, "hello must come first");
-    return;
-  }
-  std::visit([&](const auto& known) { handle(viewer, found->second, known); }, *message);
-}
-
-void Session::receive_binary(Viewer viewer) {
-  close(viewer, kPolicy, "pages send no binary messages");
-}
-
-void Session::handle(Viewer viewer, Page& page, const page::Hello& hello) {
-  if (page.stage != Stage::kConnected) {
-    close(viewer, kPolicy, "hello comes once");
-    return;
-  }
-  if (hello.protocol != page::kProtocol) {
-    refuse(viewer, page, 0,
-           {"hello.protocol", "this server speaks protocol " + std::to_string(page::kProtocol),
-            "reload the page"});
-    page.stage = Stage::kClosing;
-    page.close = CloseFrame{kPolicy, "wrong protocol"};
-    return;
-  }
-  page.stage = Stage::kWaiting;
-  if (driver_ == 0) driver_ = viewer;
-  tell_driver(viewer);
-  if (!welcome_.empty()) {
-    welcome(viewer, page);
-    return;
-  }
-  const bool loading_known =
-      std::any_of(retained_.begin(), retained_.end(),
-                  [](const Retained& state) { return state.type == "loading"; });
-  if (!loading_known) {
-    enqueue(viewer, page,
-            {"loading", shared(R"({"type":"loading","what":"volume","done":0,"total":0})")});
-  }
-  for (const Retained& state : retained_) enqueue(viewer, page, {state.type, state.text});
-}
-
-void Session::handle(Viewer viewer, Page& page, const page::MoveCamera& move) {
-  if (!accepts_input(viewer, page, move.serial)) return;
-  if (const auto failure = page::refusal(move.camera)) {
-    refuse(viewer, page, move.serial, *failure);
-    return;
-  }
-  events_.push_back(CameraInput{viewer, move.serial, move.camera});
-}
-
-void Session::handle(Viewer viewer, Page& page, const page::Edit& edit) {
-  if (!accepts_input(viewer, page, edit.serial)) return;
-  events_.push_back(EditInput{viewer, edit.serial, edit.edit_json});
-}
-
-void Session::handle(Viewer viewer, Page& page, const page::Resize& resize) {
-  if (!accepts_input(viewer, page, resize.serial)) return;
-  if (const auto failure = page::refusal(resize)) {
-    refuse(viewer, page, resize.serial, *failure);
-    return;
-  }
-  events_.push_back(SizeInput{
-      viewer,
-      resize.serial,
-      {static_cast<std::int32_t>(resize.width), static_cast<std::int32_t>(resize.height)}});
-}
-
-void Session::handle(Viewer viewer, Page&, const page::Drive&) {
-  if (driver_ == viewer) return;
-  driver_ = viewer;
-  tell_driver(0);
-}
-
-void Session::handle(Viewer viewer, Page& page, const page::Ack& ack) {
-  if (ack.picture > page.last_begun) {
-    close(viewer, kPolicy, "ack of a picture that was never sent");
-    return;
-  }
-  // A page that shows a picture will not show an older one any more.
-  while (!page.unacknowledged.empty() && page.unacknowledged.front() <= ack.picture) {
-    page.unacknowledged.pop_front();
-  }
-}
-
-void Session::handle(Viewer viewer, Page& page, const page::Ping& ping) {
-  enqueue(viewer, page, {"", shared(Json{{"type", "pong"}, {"time", ping.time}}.dump())});
-}
-
-bool Session::accepts_input(Viewer viewer, Page& page, std::uint32_t serial) {
-  if (serial <= page.serial) {
-    close(viewer, kPolicy, "serial does not grow");
-    return false;
-  }
-  page.serial = serial;
-  return viewer == driver_;
-}
-
-void Session::refuse(Viewer viewer, Page& page, std::uint32_t serial, const Failure& failure) {
-  const Json json{{"type", "refused"},
-                  {"serial", serial},
-                  {"where", failure.where},
-                  {"what", failure.what},
-                  {"mend", failure.mend}};
-  enqueue(viewer, page, {"", shared(json.dump())});
-}
-
 // ---- who is there
 
 std::uint32_t Session::present_count() const {
@@ -209,8 +89,8 @@ void Session::leave(Viewer viewer) {
 }
 
 void Session::tell_driver(Viewer except) {
-  const auto text =
-      shared(Json{{"type", "driver"}, {"driver", driver_}, {"viewers", present_count()}}.dump());
+  const auto text = shared_text(
+      Json{{"type", "driver"}, {"driver", driver_}, {"viewers", present_count()}}.dump());
   for (auto& [viewer, page] : pages_) {
     if (viewer != except && page.stage == Stage::kWatching) {
       enqueue(viewer, page, {"driver", text});
@@ -229,7 +109,7 @@ void Session::welcome(Viewer viewer, Page& page) {
   const Json numbers{{"viewer", viewer}, {"driver", driver_}, {"viewers", present_count()}};
   std::string text = numbers.dump();
   text.back() = ',';
-  enqueue(viewer, page, {"", shared(text + welcome_)});
+  enqueue(viewer, page, {"", shared_text(text + welcome_)});
   for (const Retained& state : retained_) {
     if (state.type != "loading") enqueue(viewer, page, {state.type, state.text});
   }
@@ -251,7 +131,7 @@ void Session::set_welcome(const std::string& welcome_json) {
 void Session::broadcast(const std::string& state_json) {
   const Json json = message_of_ours(state_json);
   const std::string type = json["type"];
-  const auto text = shared(state_json);
+  const auto text = shared_text(state_json);
   const auto found = std::find_if(retained_.begin(), retained_.end(),
                                   [&](const Retained& state) { return state.type == type; });
   if (found == retained_.end()) {
@@ -268,7 +148,7 @@ void Session::send(Viewer viewer, std::string json) {
   message_of_ours(json);
   const auto found = pages_.find(viewer);
   if (found == pages_.end() || !present(found->second)) return;
-  enqueue(viewer, found->second, {"", shared(std::move(json))});
+  enqueue(viewer, found->second, {"", shared_text(std::move(json))});
 }
 
 void Session::publish(Picture picture) {

@@ -13,6 +13,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <variant>
 #include <vector>
 
@@ -35,6 +36,9 @@ struct NumberedPicture {
 struct TextFrame {
   std::shared_ptr<const std::string> text;
 };
+inline std::shared_ptr<const std::string> shared_text(std::string text) {
+  return std::make_shared<const std::string>(std::move(text));
+}
 struct RegionFrame {
   std::shared_ptr<const NumberedPicture> picture;
   std::size_t region = 0;
