@@ -57,7 +57,7 @@ export class Connection {
     try {
       socket = new WebSocket(this.address_());
     } catch {
-      this.deny('the address of the session is not valid');
+      this.deny('The address of the session is not valid');
       return;
     }
     socket.binaryType = 'arraybuffer';
@@ -92,7 +92,7 @@ export class Connection {
   private closed(event: CloseEvent): void {
     this.socket_ = null;
     if (event.code === kPolicyViolation) {
-      this.deny(event.reason || 'the server closed this page’s connection');
+      this.deny(event.reason || 'The server closed this page’s connection');
       return;
     }
     this.lost(event.reason);
@@ -114,7 +114,7 @@ export class Connection {
     try {
       const { status } = await fetch(url, { cache: 'no-store' });
       if ((status === 401 || status === 403) && this.current_ === 'lost') {
-        this.deny('the access token is missing or wrong');
+        this.deny('The access token is missing or wrong: the program prints the address with it when it starts');
       }
     } catch {
       // Not reachable at all: that is what the state says already.
@@ -136,7 +136,7 @@ export class Connection {
       const socket = this.socket_;
       this.socket_ = null;
       socket?.close();
-      this.lost('the server has fallen silent');
+      this.lost('The server has fallen silent');
     } else if (quiet > kPingMs) {
       this.send({ type: 'ping', time: performance.now() });
     }

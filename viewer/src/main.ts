@@ -34,6 +34,7 @@ function sessionAddress(): string {
 const connection = new Connection(sessionAddress);
 const session = new Session(connection);
 const canvas = el('canvas', {
+  class: 'blank',
   width: 512, height: 512, tabIndex: 0, role: 'application',
   aria: { label: 'The rendered picture. Arrow keys turn it, plus and minus zoom, question mark shows help.' },
 });
@@ -114,6 +115,7 @@ connection.state.listen((state) => { if (state === 'open') view.reset(); });
 view.problem.listen((problem) => session.say(`A picture could not be shown: ${problem}.`));
 view.dropped.listen((picture) => connection.send({ type: 'ack', picture }));
 view.shown.listen((picture) => {
+  canvas.classList.remove('blank');
   place();
   session.pictureShown(picture);
 });

@@ -63,6 +63,7 @@ function messageBox(session: Session, connection: Connection, useToken: (token: 
   form.addEventListener('submit', (event) => {
     event.preventDefault();
     if (token.value.trim()) useToken(token.value.trim());
+    else connection.retry();
   });
   const box = el('div', { class: 'message' }, title, detail, progress, again, form);
   const update = (): void => {
@@ -75,7 +76,7 @@ function messageBox(session: Session, connection: Connection, useToken: (token: 
     progress.hidden = state.progress === undefined;
     if (state.progress === null) progress.removeAttribute('value');
     else if (state.progress !== undefined) progress.value = state.progress;
-    again.hidden = connection.current !== 'lost' && connection.current !== 'denied';
+    again.hidden = connection.current !== 'lost';
     form.hidden = connection.current !== 'denied';
   };
   session.changed.listen((topic) => { if (topic === 'connection') update(); });
@@ -93,7 +94,7 @@ function describe(session: Session, connection: Connection): Description | null 
     return { title: 'The session cannot go on', detail: `${place}${failed.what}${failed.mend ? ` (${failed.mend})` : ''}`, bad: true };
   }
   if (connection.current === 'denied') {
-    return { title: 'Not admitted', detail: `${connection.reason}. The program prints the address with its token when it starts.`, bad: true };
+    return { title: 'Not admitted', detail: `${connection.reason}.`, bad: true };
   }
   if (connection.current === 'lost') {
     const seconds = Math.max(0, Math.ceil((connection.nextAttempt - performance.now()) / 1000));
