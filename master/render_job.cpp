@@ -20,7 +20,8 @@ void cast_view(Cluster& cluster, const RenderRequest& request) {
   const auto time_is_up = [&] {
     return request.time && view.complete_levels > 0 && Clock::now() - view.begin >= *request.time;
   };
-  while (!view.finished() && !time_is_up()) {
+  // The last samples may be composed before the master hears what they cost.
+  while (!(view.finished() && cluster.progress() == 1) && !time_is_up()) {
     cluster.poll(kPollTime);
     request.progress(cluster.progress());
     check_interrupted(request);

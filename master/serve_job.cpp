@@ -10,7 +10,9 @@
 namespace goldthread {
 namespace {
 
+/// Decisions also depend on the time that passes; at rest they do not.
 constexpr std::chrono::milliseconds kPollTime{5};
+constexpr std::chrono::milliseconds kRestPollTime{50};
 constexpr std::chrono::milliseconds kStatusInterval{250};
 constexpr std::chrono::seconds kRateWindow{1};
 
@@ -34,7 +36,7 @@ void ServeJob::run() {
   load();
   begin_view();
   while (!request_.ended()) {
-    if (auto event = cluster_.poll(kPollTime)) {
+    if (auto event = cluster_.poll(settled_ ? kRestPollTime : kPollTime)) {
       std::visit([&](const auto& value) { on(value); }, *event);
     }
     act();

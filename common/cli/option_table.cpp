@@ -104,6 +104,20 @@ Outcome apply_samples(Options& options, const std::string& text) {
   return bad;
 }
 
+/// Tiles hold whole squares of the coarsest level's samples.
+Outcome apply_tile(Options& options, const std::string& text) {
+  constexpr int kCoarsestSpacing = 16;
+  int edge = 0;
+  Outcome bad = read_integer(text, kCoarsestSpacing, 1024, edge);
+  if (bad) return bad;
+  if (edge % kCoarsestSpacing != 0) {
+    return BadValue{fmt::format("{} is not a multiple of {}", quoted(text), kCoarsestSpacing),
+                    "give 16, 32, 48, 64 …"};
+  }
+  options.tile_px = edge;
+  return {};
+}
+
 Outcome apply_update(Options&, const std::string& text) {
   int percent = 100;
   Outcome bad = read_choice<int>(text, {{"100", 100}, {"50", 50}, {"25", 25}}, percent);
@@ -237,8 +251,8 @@ constexpr OptionRow kTable[] = {
      [](Options& o, const std::string& t) { return read_integer(t, 1, 1024, o.threads); }},
     {"compositors", "--compositors", "N", kCluster, "Compositor ranks [1]", kBoth,
      [](Options& o, const std::string& t) { return read_integer(t, 1, 1024, o.compositors); }},
-    {"tile", "--tile", "N", kCluster, "Tile edge in pixels [64]", kBoth,
-     [](Options& o, const std::string& t) { return read_integer(t, 16, 1024, o.tile_px); }},
+    {"tile", "--tile", "N", kCluster, "Tile edge in pixels, a multiple of 16 [64]", kBoth,
+     apply_tile},
     {"schedule", "--schedule", "HOW", kCluster,
      "squares or rows: which parts of the screen go out together [squares]", kBoth, apply_schedule},
     {"data", "--data", "WHERE", kCluster, "Where the volume lives: replicated [replicated]", kBoth,
