@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cctype>
 #include <fstream>
+#include <initializer_list>
 #include <string>
 
 #include "common/volume/volume_checks.h"
@@ -52,45 +53,77 @@ std::string trimmed(const std::string& text) {
              : text.substr(first, text.find_last_not_of(" \t\r") - first + 1);
 }
 
-// What a text header gives for one of `keys`, without the blanks around it.
-std::optional<std::string> header_value(const fs::path& file, char separator,
-                                        const std::array<std::string_view, 2>& keys) {
+// A field of a text header.
+struct HeaderField {
+  std::string value;  // without the blanks around it
+  std::uint64_t end;  // where the next line begins
+};
+
+// The first line whose part before `separator` is one of `keys`.
+std::optional<HeaderField> header_field(const fs::path& file, char separator,
+                                        std::initializer_list<std::string_view> keys) {
   std::ifstream stream(file, std::ios::binary);
   std::string line;
-  for (std::size_t read = 0; read < kLongestHeader && std::getline(stream, line);
-       read += line.size() + 1) {
-    const auto at = line.find(separator);
-    if (at == std::string::npos) continue;
+  for (std::uint64_t read = 0; read < kLongestHeader && std::getline(stream, line);) {
+    read += line.size() + 1;
+    const auto at = std::min(line.find(separator), line.size());
     const std::string key = trimmed(lower(line.substr(0, at)));
-    if (key == keys[0] || key == keys[1]) return trimmed(line.substr(at + 1));
+    if (std::find(keys.begin(), keys.end(), key) != keys.end())
+      return HeaderField{trimmed(line.substr(std::min(at + 1, line.size()))), read};
   }
   return std::nullopt;
 }
 
-Result<std::optional<std::uint64_t>> named_file_bytes(const fs::path& header,
-                                                      const std::optional<std::string>& value) {
-  // A list or a numbered pattern; or none at all, which the format's reader then refuses.
-  if (!value || value->empty() || value->find('%') != std::string::npos ||
-      lower(*value).starts_with("list"))
-    return std::optional<std::uint64_t>();
+using Available = Result<std::optional<DataBytes>>;
+
+Available bytes_beyond(const fs::path& file, std::uint64_t header, bool compressed) {
   std::error_code error;
-  const std::uint64_t own = fs::file_size(header, error);
-  if (lower(*value) == "local") return std::optional(own);
-  const fs::path data = header.parent_path() / *value;
-  const std::uint64_t bytes = fs::file_size(data, error);
-  if (error)
-    return failure_of(header, "the file of its voxels, " + *value + ", cannot be read",
-                      "keep both files together");
-  return std::optional(bytes);
+  const std::uint64_t bytes = fs::file_size(file, error);
+  if (error) return failure_of(file, "it cannot be read: " + error.message(), "check the path");
+  return std::optional(DataBytes{bytes - std::min(bytes, header), compressed});
 }
 
-Result<std::optional<std::uint64_t>> image_file_bytes(const fs::path& header) {
+bool is_gzip(const fs::path& file) {
+  std::ifstream stream(file, std::ios::binary);
+  return stream.get() == 0x1f && stream.get() == 0x8b;
+}
+
+// Of a text header that names its file of voxels in `field`, or is followed by them ("LOCAL").
+Available named_data(const fs::path& header, const std::optional<HeaderField>& field,
+                     bool compressed) {
+  // A list or a numbered pattern; or none at all, which the format's reader then refuses.
+  if (!field || field->value.empty() || field->value.find('%') != std::string::npos ||
+      lower(field->value).starts_with("list"))
+    return std::optional<DataBytes>();
+  if (lower(field->value) == "local") return bytes_beyond(header, field->end, compressed);
+  const fs::path data = header.parent_path() / field->value;
   std::error_code error;
-  for (const char* ending : {".img", ".img.gz", ".IMG"}) {
-    const std::uint64_t bytes = fs::file_size(fs::path(header).replace_extension(ending), error);
-    if (!error) return std::optional(bytes);
-  }
+  if (!fs::is_regular_file(data, error))
+    return failure_of(header, "the file of its voxels, " + field->value + ", is not there",
+                      "keep both files together");
+  return bytes_beyond(data, 0, compressed);
+}
+
+Available metaimage_data(const fs::path& file) {
+  const auto compressed = header_field(file, '=', {"compresseddata"});
+  return named_data(file, header_field(file, '=', {"elementdatafile"}),
+                    compressed && lower(compressed->value) != "false");
+}
+
+Available nifti_pair_data(const fs::path& header) {
+  std::error_code error;
+  for (const char* ending : {".img", ".img.gz", ".IMG"})
+    if (const fs::path image = fs::path(header).replace_extension(ending);
+        fs::is_regular_file(image, error))
+      return bytes_beyond(image, 0, is_gzip(image));
   return failure_of(header, "the .img file of its voxels is not there", "keep both files together");
+}
+
+Available vtk_data(const fs::path& file) {
+  const bool binary = header_field(file, ' ', {"binary"}).has_value();
+  const auto last = header_field(
+      file, ' ', {"lookup_table", "color_scalars", "vectors", "normals", "tensors"});
+  return bytes_beyond(file, last ? last->end : 0, !binary);
 }
 
 }  // namespace
@@ -116,16 +149,14 @@ std::vector<fs::path> numbered_files(const fs::path& folder,
   return files;
 }
 
-Result<std::optional<std::uint64_t>> data_file_bytes(const fs::path& file) {
-  if (has_ending(file, ".mhd") || has_ending(file, ".mha"))
-    return named_file_bytes(file, header_value(file, '=', {"elementdatafile", "elementdatafile"}));
+Result<std::optional<DataBytes>> data_bytes_of(const fs::path& file) {
+  if (has_ending(file, ".mhd") || has_ending(file, ".mha")) return metaimage_data(file);
   if (has_ending(file, ".nhdr"))
-    return named_file_bytes(file, header_value(file, ':', {"data file", "datafile"}));
-  if (has_ending(file, ".hdr")) return image_file_bytes(file);
-  std::error_code error;
-  const std::uint64_t bytes = fs::file_size(file, error);
-  if (error) return failure_of(file, "it cannot be read: " + error.message(), "check the path");
-  return std::optional(bytes);
+    return named_data(file, header_field(file, ':', {"data file", "datafile"}), true);
+  if (has_ending(file, ".hdr")) return nifti_pair_data(file);
+  if (has_ending(file, ".vtk")) return vtk_data(file);
+  const bool plain = (has_ending(file, ".nii") || has_ending(file, ".img")) && !is_gzip(file);
+  return bytes_beyond(file, 0, !plain);
 }
 
 }  // namespace goldthread

@@ -21,8 +21,14 @@ bool has_ending(const std::filesystem::path& file, std::string_view ending);
 std::vector<std::filesystem::path> numbered_files(const std::filesystem::path& folder,
                                                   const std::array<const char*, 4>& endings);
 
-/// How large the file is that holds the voxels of `file`: itself, or the one that a detached header
-/// (.hdr .nhdr .mhd) names. Nothing where they are several; a Failure where it is not there.
-Result<std::optional<std::uint64_t>> data_file_bytes(const std::filesystem::path& file);
+/// Bytes of a file that may be voxels, as they are or perhaps compressed.
+struct DataBytes {
+  std::uint64_t bytes = 0;
+  bool compressed = true;
+};
+
+/// Those of `file` behind its header, or of the file that a detached header (.hdr .nhdr .mhd) names.
+/// Nothing where they are several; a Failure where it is not there.
+Result<std::optional<DataBytes>> data_bytes_of(const std::filesystem::path& file);
 
 }  // namespace goldthread

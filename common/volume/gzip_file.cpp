@@ -9,6 +9,7 @@
 #include <fstream>
 #include <memory>
 #include <new>
+#include <vector>
 
 #include "common/volume/volume_checks.h"
 
@@ -76,6 +77,20 @@ std::optional<Failure> inflate_file(const fs::path& file, std::span<std::byte> o
   gzread(stream.get(), &beyond, 1);
   gzerror(stream.get(), &error);
   if (error != Z_OK && error != Z_STREAM_END) return truncated(done);
+  return std::nullopt;
+}
+
+std::optional<Failure> check_inflates(const fs::path& file, std::uint64_t bytes) {
+  const std::unique_ptr<gzFile_s, int (*)(gzFile)> stream(gzopen(file.c_str(), "rb"), gzclose);
+  std::vector<std::byte> scratch(std::size_t(1) << 18);
+  for (std::uint64_t left = bytes; left > 0;) {
+    const auto wanted = unsigned(std::min<std::uint64_t>(scratch.size(), left));
+    const int got = stream ? gzread(stream.get(), scratch.data(), wanted) : 0;
+    if (got <= 0)
+      return failure_of(file, fmt::format("its data ends or is damaged {} bytes early", left),
+                        "the file is truncated: copy it again");
+    left -= std::uint64_t(got);
+  }
   return std::nullopt;
 }
 

@@ -4,6 +4,7 @@
 // read as it is.
 
 #include <cstddef>
+#include <cstdint>
 #include <filesystem>
 #include <functional>
 #include <optional>
@@ -19,5 +20,8 @@ namespace goldthread {
 /// is.
 std::optional<Failure> inflate_file(const std::filesystem::path& file, std::span<std::byte> out,
                                     const std::function<void(double)>& progress);
+
+/// Whether `file` holds at least `bytes` inflated, at the cost of inflating them.
+std::optional<Failure> check_inflates(const std::filesystem::path& file, std::uint64_t bytes);
 
 }  // namespace goldthread

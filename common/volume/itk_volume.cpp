@@ -10,13 +10,12 @@
 #include <itkMetaImageIO.h>
 #include <itkNiftiImageIO.h>
 #include <itkNrrdImageIO.h>
-#include <itkTIFFImageIO.h>
 #include <itkVTKImageIO.h>
 #include <nifti1_io.h>
 
 #include <algorithm>
 #include <array>
-#include <cstdarg>
+#include <cstring>
 #include <iostream>
 #include <mutex>
 #include <sstream>
@@ -27,14 +26,6 @@
 #include "common/volume/nifti_header.h"
 #include "common/volume/slice_assembly.h"
 #include "common/volume/volume_checks.h"
-
-// libtiff as ITK carries it, under names of its own and without its headers. Weak: an ITK that was
-// built with the system's libtiff has no such names.
-extern "C" {
-using TiffHandler = void (*)(const char*, const char*, va_list);
-__attribute__((weak)) TiffHandler itk_TIFFSetErrorHandler(TiffHandler);
-__attribute__((weak)) TiffHandler itk_TIFFSetWarningHandler(TiffHandler);
-}
 
 namespace goldthread {
 namespace {
@@ -56,14 +47,12 @@ Reader make_reader() {
 
 constexpr Format kNifti{
     "NIfTI", {".nii", ".nii.gz", ".hdr", ".img"}, make_reader<itk::NiftiImageIO>, true};
-constexpr Format kTiff{"TIFF", {".tif", ".tiff"}, make_reader<itk::TIFFImageIO>, false};
 constexpr Format kDicom{"DICOM", {}, make_reader<itk::GDCMImageIO>, false};
-constexpr std::array<Format, 5> kFormats{
+constexpr std::array<Format, 4> kFormats{
     {kNifti,
      {"NRRD", {".nrrd", ".nhdr"}, make_reader<itk::NrrdImageIO>, false},
      {"MetaImage", {".mha", ".mhd"}, make_reader<itk::MetaImageIO>, true},
-     {"VTK", {".vtk"}, make_reader<itk::VTKImageIO>, false},
-     kTiff}};
+     {"VTK", {".vtk"}, make_reader<itk::VTKImageIO>, false}}};
 
 const Format* format_of(const fs::path& file) {
   for (const Format& format : kFormats)
@@ -107,8 +96,6 @@ class QuietStreams {
 void silence_libraries() {
   itk::Object::SetGlobalWarningDisplay(false);
   nifti_set_debug_level(0);
-  if (itk_TIFFSetErrorHandler) itk_TIFFSetErrorHandler(nullptr);
-  if (itk_TIFFSetWarningHandler) itk_TIFFSetWarningHandler(nullptr);
 }
 
 void read_header(itk::ImageIOBase& io, const fs::path& file) {
@@ -246,15 +233,69 @@ Result<std::unique_ptr<std::byte[]>> read_voxels(const fs::path& file, const For
   return memory;
 }
 
-// TIFF says how large a pixel is, not how far its pages are apart.
-void take_cubic_voxels(VolumeInfo& info) {
-  if (info.geometry.size.z < 2) return;
-  info.geometry.spacing_mm.z = info.geometry.spacing_mm.x;
-  info.notes.push_back("TIFF does not tell the distance of slices: taken as wide as a pixel");
+// Whether the file is large enough for `bytes` of voxels, as far as its header tells without reading.
+std::optional<Failure> check_size(const fs::path& file, std::uint64_t bytes) {
+  const auto available = data_bytes_of(file);
+  if (!available) return available.failure();
+  return *available ? check_file_holds(file, **available, bytes) : std::nullopt;
+}
+
+// Voxels behind a NIfTI header, inflated to where they stay.
+std::optional<Failure> read_direct(const fs::path& file, const NiftiVoxels& nifti,
+                                   const LoadOptions& options, LoadedVolume& loaded) {
+  const std::uint64_t count = loaded.info.geometry.voxel_count();
+  const std::uint64_t bytes = nifti.offset + count * nifti.voxel_bytes;
+  auto memory = allocate_voxels(file, bytes);
+  if (!memory) return memory.failure();
+  if (auto failure = inflate_file(file, {memory->get(), bytes}, options.progress)) return failure;
+  const std::span<const std::byte> stored(memory->get() + nifti.offset, count * nifti.voxel_bytes);
+  loaded.byte_count = count * bytes_per_voxel(loaded.info.type);
+  if (!nifti.rescaled()) {
+    // A header of odd length is left behind, so that the voxels are aligned.
+    loaded.first_byte = nifti.offset % 8 == 0 ? nifti.offset : 0;
+    std::byte* to = memory->get() + loaded.first_byte;
+    if (loaded.first_byte == 0) std::memmove(to, stored.data(), stored.size());
+    take_component({to, stored.size()}, *nifti.type, 1, 0, {to, loaded.byte_count});
+    loaded.memory = std::move(*memory);
+    return std::nullopt;
+  }
+  auto values = allocate_voxels(file, loaded.byte_count);
+  if (!values) return values.failure();
+  rescale(stored, *nifti.type, nifti.slope, nifti.intercept, loaded.info.type,
+          {values->get(), loaded.byte_count});
+  loaded.memory = std::move(*values);
+  return std::nullopt;
+}
+
+// The same through ITK, for all that needs more than a copy.
+std::optional<Failure> read_through_itk(const fs::path& file, const Format& format,
+                                        const OpenFile& opened, const LoadOptions& options,
+                                        LoadedVolume& loaded) {
+  auto memory = read_voxels(file, format, opened);
+  if (!memory) return memory.failure();
+  const VolumeInfo& info = loaded.info;
+  loaded.byte_count = info.geometry.voxel_count() * bytes_per_voxel(info.type);
+  take_component({memory->get(), opened.bytes_per_step()}, opened.type, info.components,
+                 info.component, {memory->get(), loaded.byte_count});
+  loaded.memory = std::move(*memory);
+  if (options.progress) options.progress(1.0);
+  return std::nullopt;
+}
+
+void note_scale(const NiftiVoxels& nifti, VolumeInfo& info) {
+  info.stored_type = name_of(*nifti.type);
+  info.notes = {fmt::format("{} · {:.9g} + {:.9g} is held as {}", info.stored_type, nifti.slope,
+                            nifti.intercept, name_of(info.type))};
 }
 
 Result<LoadedVolume> read_file(const fs::path& file, const Format& format,
                                const LoadOptions& options, bool header_only) {
+  std::optional<NiftiVoxels> nifti;
+  if (format.name == kNifti.name) {
+    auto header = read_nifti_header(file);
+    if (!header) return header.failure();
+    nifti = *header;
+  }
   auto opened = open(file, format);
   if (!opened) return opened.failure();
   LoadedVolume loaded;
@@ -263,34 +304,20 @@ Result<LoadedVolume> read_file(const fs::path& file, const Format& format,
   info.format = format.name;
   info.geometry = geometry_of(*opened->io);
   if (auto failure = check_geometry(file, opened->size, info.geometry)) return *failure;
-  if (format.name == kTiff.name) take_cubic_voxels(info);
-  set_types(opened->type, info);
+  const bool direct = nifti && nifti->direct() && opened->components == 1;
+  set_types(direct ? nifti->value_type() : opened->type, info);
+  if (direct && nifti->rescaled()) note_scale(*nifti, info);
   if (auto failure = describe(*opened, options, info)) return *failure;
-  const auto data_bytes = data_file_bytes(file);
-  if (!data_bytes) return data_bytes.failure();
-  if (*data_bytes)
-    if (auto failure = check_file_holds(file, **data_bytes, opened->bytes_per_step()))
-      return *failure;
+  const std::uint64_t bytes =
+      nifti ? info.geometry.voxel_count() * nifti->voxel_bytes : opened->bytes_per_step();
+  if (auto failure = check_size(file, bytes)) return *failure;
   if (header_only) return loaded;
-
-  const std::uint64_t bytes = opened->bytes_per_step();
-  if (const auto offset = nifti_voxels_offset(file, opened->type, opened->components)) {
-    auto memory = allocate_voxels(file, *offset + bytes);
-    if (!memory) return memory.failure();
-    if (auto failure = inflate_file(file, {memory->get(), *offset + bytes}, options.progress))
-      return *failure;
-    loaded.first_byte = *offset;
-    loaded.memory = std::move(*memory);
-  } else {
-    auto memory = read_voxels(file, format, *opened);
-    if (!memory) return memory.failure();
-    loaded.memory = std::move(*memory);
-    if (options.progress) options.progress(1.0);
-  }
-  std::byte* first = loaded.memory.get() + loaded.first_byte;
-  loaded.byte_count = info.geometry.voxel_count() * bytes_per_voxel(info.type);
-  take_component({first, bytes}, opened->type, info.components, info.component,
-                 {first, loaded.byte_count});
+  // What NIfTI's library misses at the end of a compressed file is no error to it.
+  if (nifti && !direct && nifti->offset > 0)
+    if (auto failure = check_inflates(file, nifti->offset + bytes)) return *failure;
+  const auto failure = direct ? read_direct(file, *nifti, options, loaded)
+                              : read_through_itk(file, format, *opened, options, loaded);
+  if (failure) return *failure;
   return loaded;
 }
 
@@ -320,10 +347,7 @@ Result<LoadedVolume> read_slices(const std::vector<fs::path>& files, const Forma
                       slice->size[0], slice->size[1], slice->size[2], slice->components,
                       first->size[0], first->size[1], first->size[2], first->components),
           "put only slices of one volume into a folder");
-    const auto data_bytes = data_file_bytes(files[i]);
-    if (!data_bytes) return data_bytes.failure();
-    if (auto failure = check_file_holds(files[i], **data_bytes, slice->bytes_per_step()))
-      return *failure;
+    if (auto failure = check_size(files[i], slice->bytes_per_step())) return *failure;
     pixels.resize(slice->bytes_per_step());
     select_region(*slice->io, false);
     read_pixels(*slice->io, pixels.data());
@@ -340,8 +364,6 @@ bool is_itk_file_name(const fs::path& file) { return format_of(file) != nullptr;
 Result<LoadedVolume> load_itk_file(const fs::path& file, const LoadOptions& options,
                                    bool header_only) {
   const Format& format = *format_of(file);
-  if (format.name == kNifti.name)
-    if (auto failure = check_nifti_header(file)) return *failure;
   return guarded(file, format, [&] { return read_file(file, format, options, header_only); });
 }
 
@@ -357,25 +379,6 @@ Result<LoadedVolume> load_dicom_series(const fs::path& path, const LoadOptions& 
     info.geometry = series->geometry;
     info.notes = std::move(series->notes);
     return read_slices(series->files, kDicom, std::move(info), options, header_only);
-  });
-}
-
-Result<LoadedVolume> load_tiff_folder(const fs::path& folder, const LoadOptions& options,
-                                      bool header_only) {
-  return guarded(folder, kTiff, [&]() -> Result<LoadedVolume> {
-    const std::vector<fs::path> files = numbered_files(folder, kTiff.endings);
-    auto first = open(files[0], kTiff);
-    if (!first) return first.failure();
-    if (first->size[2] > 1)
-      return failure_of(files[0], "it has several pages, and its folder several files",
-                        "name the one file that is meant");
-    VolumeInfo info;
-    info.file = folder.string();
-    info.format = kTiff.name;
-    info.geometry = geometry_of(*first->io);
-    info.geometry.size.z = int(std::min<std::size_t>(files.size(), 1 << 20));
-    take_cubic_voxels(info);
-    return read_slices(files, kTiff, std::move(info), options, header_only);
   });
 }
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// NIfTI, NRRD, MetaImage, TIFF, legacy VTK and DICOM, through ITK; internal to volume_io. With
+// NIfTI, NRRD, MetaImage, legacy VTK and DICOM, through ITK; internal to volume_io. With
 // `header_only` the voxels are not read and a LoadedVolume has its info alone.
 
 #include <filesystem>
@@ -20,10 +20,5 @@ Result<LoadedVolume> load_itk_file(const std::filesystem::path& file, const Load
 /// A DICOM series: a folder, or one of its files.
 Result<LoadedVolume> load_dicom_series(const std::filesystem::path& path,
                                        const LoadOptions& options, bool header_only);
-
-/// The .tif files of a folder as slices, in the order of the numbers in their names. There is at
-/// least one.
-Result<LoadedVolume> load_tiff_folder(const std::filesystem::path& folder,
-                                      const LoadOptions& options, bool header_only);
 
 }  // namespace goldthread

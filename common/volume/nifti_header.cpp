@@ -4,8 +4,9 @@
 #include <fmt/format.h>
 #include <zlib.h>
 
-#include <algorithm>
 #include <array>
+#include <bit>
+#include <cmath>
 #include <cstring>
 #include <memory>
 
@@ -37,19 +38,49 @@ std::optional<Header> read_header(const std::filesystem::path& file) {
   return header;
 }
 
-// A 16-bit field, in the other byte order if `swapped`.
-int short_field(const Header& header, std::size_t offset, bool swapped) {
-  const auto value = field<std::uint16_t>(header, offset);
-  return std::int16_t(swapped ? std::uint16_t(value << 8 | value >> 8) : value);
+// Fields in either byte order.
+class Fields {
+ public:
+  Fields(const Header& header, bool swapped) : header_(header), swapped_(swapped) {}
+  int number(std::size_t offset) const {
+    const auto value = field<std::uint16_t>(header_, offset);
+    return std::int16_t(swapped_ ? std::uint16_t(value << 8 | value >> 8) : value);
+  }
+  float real(std::size_t offset) const {
+    auto value = field<std::uint32_t>(header_, offset);
+    if (swapped_) value = __builtin_bswap32(value);
+    return std::bit_cast<float>(value);
+  }
+
+ private:
+  const Header& header_;
+  bool swapped_;
+};
+
+// Bytes of a voxel for each code of the standard; 0 for what it does not know.
+std::uint64_t voxel_bytes_of(int code) {
+  switch (code) {
+    case 2:
+    case 256: return 1;
+    case 4:
+    case 512: return 2;
+    case 128: return 3;
+    case 8:
+    case 16:
+    case 768:
+    case 2304: return 4;
+    case 32:
+    case 64:
+    case 1024:
+    case 1280: return 8;
+    case 1536:
+    case 1792: return 16;
+    case 2048: return 32;
+    default: return 0;
+  }
 }
 
-bool is_datatype(int code) {
-  constexpr std::array<int, 16> kCodes{2,   4,   8,    16,   32,   64,   128,  256,
-                                       512, 768, 1024, 1280, 1536, 1792, 2048, 2304};
-  return std::find(kCodes.begin(), kCodes.end(), code) != kCodes.end();
-}
-
-std::optional<StoredType> type_of(std::int16_t datatype) {
+std::optional<StoredType> type_of(int datatype) {
   switch (datatype) {
     case 2:
       return StoredType::kUInt8;
@@ -76,43 +107,62 @@ std::optional<StoredType> type_of(std::int16_t datatype) {
   }
 }
 
+// A slope of 0 means that there is none; one that is not finite cannot be meant.
+void read_scale(const Fields& fields, NiftiVoxels& voxels) {
+  const float slope = fields.real(kSlope), intercept = fields.real(kIntercept);
+  if (slope == 0 || !std::isfinite(slope) || !std::isfinite(intercept)) return;
+  voxels.slope = double(slope);
+  voxels.intercept = double(intercept);
+}
+
 }  // namespace
 
-std::optional<Failure> check_nifti_header(const std::filesystem::path& file) {
-  const char* kMend = "the file is damaged, or its name ends wrongly";
-  const bool detached = has_ending(file, ".img");
+StoredType NiftiVoxels::value_type() const {
+  if (!rescaled()) return *type;
+  double least = 0, greatest = 0;
+  switch (*type) {
+    case StoredType::kUInt8: greatest = 255; break;
+    case StoredType::kInt8: least = -128, greatest = 127; break;
+    case StoredType::kUInt16: greatest = 65535; break;
+    case StoredType::kInt16: least = -32768, greatest = 32767; break;
+    default: return StoredType::kFloat32;
+  }
+  const auto fits = [&](double voxel) {
+    const double value = voxel * slope + intercept;
+    return value >= -32768 && value <= 32767;
+  };
+  const bool whole = slope == std::floor(slope) && intercept == std::floor(intercept);
+  return whole && fits(least) && fits(greatest) ? StoredType::kInt16 : StoredType::kFloat32;
+}
+
+Result<NiftiVoxels> read_nifti_header(const std::filesystem::path& file) {
+  const char* const mend = "the file is damaged, or its name ends wrongly";
+  const bool beside = has_ending(file, ".img");
   const auto header =
-      read_header(detached ? std::filesystem::path(file).replace_extension(".hdr") : file);
-  if (!header) return failure_of(file, "it holds no whole NIfTI header", kMend);
+      read_header(beside ? std::filesystem::path(file).replace_extension(".hdr") : file);
+  if (!header) return failure_of(file, "it holds no whole NIfTI header", mend);
   if (field<std::int32_t>(*header, kSizeOfHeader) == 540)
     return failure_of(file, "it is NIfTI-2, which is not read", "write it as NIfTI-1");
   const auto is_count = [](int axes) { return axes >= 1 && axes <= 7; };
-  const bool swapped = !is_count(short_field(*header, kDimensions, false));
-  const int axes = short_field(*header, kDimensions, swapped);
-  if (!is_count(axes)) return failure_of(file, "it is no NIfTI file", kMend);
+  NiftiVoxels voxels;
+  voxels.native = is_count(Fields(*header, false).number(kDimensions));
+  const Fields fields(*header, !voxels.native);
+  const int axes = fields.number(kDimensions);
+  if (!is_count(axes)) return failure_of(file, "it is no NIfTI file", mend);
   for (std::size_t axis = 1; axis <= std::size_t(axes); ++axis)
-    if (const int size = short_field(*header, kDimensions + 2 * axis, swapped); size < 1)
-      return failure_of(file, fmt::format("its size along axis {} is {}", axis, size), kMend);
-  if (const int code = short_field(*header, kDatatype, swapped); !is_datatype(code))
-    return failure_of(file, fmt::format("NIfTI has no voxel type {}", code), kMend);
-  return std::nullopt;
-}
-
-std::optional<std::uint64_t> nifti_voxels_offset(const std::filesystem::path& file, StoredType type,
-                                                 std::uint64_t components) {
-  const auto read = read_header(file);
-  if (!read || components != 1) return std::nullopt;
-  const Header& header = *read;
-  if (field<std::int32_t>(header, kSizeOfHeader) != std::int32_t(kHeaderBytes) ||
-      std::memcmp(header.data() + kMagic, "n+1", 4) != 0 ||
-      type_of(field<std::int16_t>(header, kDatatype)) != type)
-    return std::nullopt;
-  const float slope = field<float>(header, kSlope), intercept = field<float>(header, kIntercept);
-  if (slope != 0 && !(slope == 1 && intercept == 0)) return std::nullopt;
-  const float offset = field<float>(header, kVoxelOffset);
-  if (!(offset >= 352 && offset <= 1 << 24)) return std::nullopt;
-  const auto bytes = std::uint64_t(offset);
-  return bytes % bytes_of(type) == 0 ? std::optional(bytes) : std::nullopt;
+    if (const int size = fields.number(kDimensions + 2 * axis); size < 1)
+      return failure_of(file, fmt::format("its size along axis {} is {}", axis, size), mend);
+  voxels.voxel_bytes = voxel_bytes_of(fields.number(kDatatype));
+  if (voxels.voxel_bytes == 0)
+    return failure_of(file, fmt::format("NIfTI has no voxel type {}", fields.number(kDatatype)), mend);
+  voxels.type = type_of(fields.number(kDatatype));
+  read_scale(fields, voxels);
+  if (std::memcmp(header->data() + kMagic, "n+1", 4) != 0) return voxels;
+  const float offset = fields.real(kVoxelOffset);
+  if (!(offset >= 352 && offset <= float(1 << 24)))
+    return failure_of(file, fmt::format("its voxels begin at byte {}", offset), mend);
+  voxels.offset = std::uint64_t(offset);
+  return voxels;
 }
 
 }  // namespace goldthread

@@ -12,13 +12,23 @@
 
 namespace goldthread {
 
-/// Whether the header of `file` (of its .hdr, for an .img) is one of NIfTI-1 or Analyze, in either
-/// byte order, with sizes above 0 and a type that the standard knows.
-std::optional<Failure> check_nifti_header(const std::filesystem::path& file);
+/// What the header of a NIfTI-1 or Analyze file says of its voxels.
+struct NiftiVoxels {
+  std::optional<StoredType> type;  ///< one real number per voxel; absent: RGB, complex, …
+  std::uint64_t voxel_bytes = 0;   ///< of one number, or of all of an RGB or complex one
+  std::uint64_t offset = 0;        ///< before the voxels, once inflated; 0 for a file beside
+  bool native = false;             ///< this machine's byte order
+  double slope = 1, intercept = 0;
 
-/// For a NIfTI-1 file with header and voxels in one, in this machine's byte order, of one component
-/// of `type`, and not to be rescaled: the number of bytes, once inflated, before its voxels.
-std::optional<std::uint64_t> nifti_voxels_offset(const std::filesystem::path& file, StoredType type,
-                                                 std::uint64_t components);
+  bool rescaled() const { return slope != 1 || intercept != 0; }
+  /// Whether the file, inflated, holds the voxels as they lie in memory behind `offset`.
+  bool direct() const { return type && native && offset > 0; }
+  /// The type of voxel · slope + intercept: int16 where it surely fits, or else float32.
+  StoredType value_type() const;
+};
+
+/// Reads the header of `file` (of its .hdr, for an .img), in either byte order. A Failure unless its
+/// sizes are above 0 and its type is one that the standard knows.
+Result<NiftiVoxels> read_nifti_header(const std::filesystem::path& file);
 
 }  // namespace goldthread

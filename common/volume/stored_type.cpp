@@ -39,6 +39,21 @@ void convert(const std::byte* from, std::size_t stride, std::byte* to, std::size
   }
 }
 
+template <class From>
+void rescale_from(const std::byte* from, double slope, double intercept, VoxelType to_type,
+                  std::span<std::byte> to) {
+  const std::size_t width = bytes_per_voxel(to_type);
+  for (std::size_t i = 0; i < to.size() / width; ++i) {
+    From number;
+    std::memcpy(&number, from + i * sizeof(From), sizeof(From));
+    const double value = double(number) * slope + intercept;
+    const auto whole = std::int16_t(to_type == VoxelType::kInt16 ? value : 0);
+    const auto real = float(value);
+    std::memcpy(to.data() + i * width,
+                to_type == VoxelType::kInt16 ? static_cast<const void*>(&whole) : &real, width);
+  }
+}
+
 }  // namespace
 
 std::size_t bytes_of(StoredType type) { return traits(type).bytes; }
@@ -98,6 +113,25 @@ void widen_to_float(std::span<const std::byte> from, VoxelType type, std::span<f
       return convert<std::int16_t, float>(from.data(), stride, out, to.size());
     case VoxelType::kFloat32:
       return convert<float, float>(from.data(), stride, out, to.size());
+  }
+}
+
+void rescale(std::span<const std::byte> from, StoredType type, double slope, double intercept,
+             VoxelType to_type, std::span<std::byte> to) {
+  const auto run = [&]<class T>(T) {
+    rescale_from<T>(from.data(), slope, intercept, to_type, to);
+  };
+  switch (type) {
+    case StoredType::kUInt8: return run(std::uint8_t{});
+    case StoredType::kInt8: return run(std::int8_t{});
+    case StoredType::kUInt16: return run(std::uint16_t{});
+    case StoredType::kInt16: return run(std::int16_t{});
+    case StoredType::kUInt32: return run(std::uint32_t{});
+    case StoredType::kInt32: return run(std::int32_t{});
+    case StoredType::kUInt64: return run(std::uint64_t{});
+    case StoredType::kInt64: return run(std::int64_t{});
+    case StoredType::kFloat32: return run(float{});
+    case StoredType::kFloat64: return run(double{});
   }
 }
 

@@ -41,6 +41,10 @@ StoredType stored_type(VoxelType type);
 void take_component(std::span<const std::byte> from, StoredType type, int components, int component,
                     std::span<std::byte> to);
 
+/// Numbers of `type` · slope + intercept, as int16 (which they must fit) or float32.
+void rescale(std::span<const std::byte> from, StoredType type, double slope, double intercept,
+             VoxelType to_type, std::span<std::byte> to);
+
 /// Held voxels of any type as floats, exactly.
 void widen_to_float(std::span<const std::byte> from, VoxelType type, std::span<float> to);
 

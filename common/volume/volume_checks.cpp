@@ -71,12 +71,13 @@ std::optional<Failure> check_geometry(const std::filesystem::path& file, const F
   return std::nullopt;
 }
 
-std::optional<Failure> check_file_holds(const std::filesystem::path& file, std::uint64_t file_bytes,
+std::optional<Failure> check_file_holds(const std::filesystem::path& file, DataBytes available,
                                         std::uint64_t data_bytes) {
-  if (data_bytes / kDeflateLimit <= file_bytes) return std::nullopt;
+  if (data_bytes / (available.compressed ? kDeflateLimit : 1) <= available.bytes)
+    return std::nullopt;
   return failure_of(file,
                     fmt::format("its header promises {} of voxels, and {} of data cannot hold them",
-                                megabytes(data_bytes), megabytes(file_bytes)),
+                                megabytes(data_bytes), megabytes(available.bytes)),
                     "the file is truncated or its header wrong: copy it again");
 }
 

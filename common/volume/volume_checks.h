@@ -8,6 +8,7 @@
 #include <span>
 
 #include "common/base/result.h"
+#include "common/volume/file_names.h"
 #include "common/volume/stored_type.h"
 #include "common/volume/volume_io.h"
 
@@ -24,9 +25,9 @@ Failure failure_of(const std::filesystem::path& file, std::string what, std::str
 std::optional<Failure> check_geometry(const std::filesystem::path& file, const FileSize3& size,
                                       VolumeGeometry& geometry);
 
-/// Whether `file_bytes` of file can hold `data_bytes` of data, at best compressed by deflate, which
-/// never shrinks to less than 1/1032.
-std::optional<Failure> check_file_holds(const std::filesystem::path& file, std::uint64_t file_bytes,
+/// Whether `available` bytes of a file can hold `data_bytes` of data, at best compressed by deflate,
+/// which never shrinks to less than 1/1032.
+std::optional<Failure> check_file_holds(const std::filesystem::path& file, DataBytes available,
                                         std::uint64_t data_bytes);
 
 /// The component to hold, chosen or 0; adds to info what there is to note.

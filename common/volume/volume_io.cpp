@@ -5,6 +5,7 @@
 #include "common/volume/file_names.h"
 #include "common/volume/itk_volume.h"
 #include "common/volume/raw_volume.h"
+#include "common/volume/tiff_volume.h"
 #include "common/volume/vdb_volume.h"
 #include "common/volume/volume_checks.h"
 
@@ -20,7 +21,7 @@ constexpr const char* kKnownFormats =
 Result<LoadedVolume> open_folder(const fs::path& folder, const LoadOptions& options,
                                  bool header_only) {
   if (!numbered_files(folder, {".tif", ".tiff"}).empty())
-    return load_tiff_folder(folder, options, header_only);
+    return load_tiff_volume(folder, options, header_only);
   return load_dicom_series(folder, options, header_only);
 }
 
@@ -35,6 +36,8 @@ Result<LoadedVolume> open_volume(const fs::path& path, const LoadOptions& option
     return failure_of(path, "it is neither a file nor a folder", "name a volume file");
   if (has_ending(path, ".raw")) return load_raw_volume(path, options, header_only);
   if (has_ending(path, ".vdb")) return load_vdb_volume(path, options, header_only);
+  if (has_ending(path, ".tif") || has_ending(path, ".tiff"))
+    return load_tiff_volume(path, options, header_only);
   if (is_itk_file_name(path)) return load_itk_file(path, options, header_only);
   if (is_dicom_file(path)) return load_dicom_series(path, options, header_only);
   return failure_of(path, "its name ends like no format of volumes, and it is no DICOM file",
