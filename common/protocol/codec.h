@@ -35,8 +35,7 @@ class ByteWriter {
   template <class T>
     requires std::is_arithmetic_v<T>
   void write(const T& value) {
-    const auto* first = reinterpret_cast<const std::byte*>(&value);
-    bytes_.insert(bytes_.end(), first, first + sizeof(T));
+    append(&value, sizeof(T));
   }
   template <class T>
     requires std::is_enum_v<T>
@@ -45,8 +44,7 @@ class ByteWriter {
   }
   void write(const std::string& text) {
     write(static_cast<std::uint32_t>(text.size()));
-    const auto* first = reinterpret_cast<const std::byte*>(text.data());
-    bytes_.insert(bytes_.end(), first, first + text.size());
+    append(text.data(), text.size());
   }
   template <class T>
   void write(const std::vector<T>& items) {
@@ -76,6 +74,12 @@ class ByteWriter {
   }
 
  private:
+  void append(const void* first, std::size_t count) {
+    const std::size_t end = bytes_.size();
+    bytes_.resize(end + count);
+    if (count > 0) std::memcpy(bytes_.data() + end, first, count);
+  }
+
   std::vector<std::byte> bytes_;
 };
 
