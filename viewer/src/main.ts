@@ -69,9 +69,9 @@ function panel(): HTMLElement {
   const title = el('p', { class: 'volume-name' });
   session.changed.listen((topic) => {
     if (topic !== 'driver' && topic !== 'connection') return;
-    const { connected, drives, viewers, volume } = session;
-    badge.textContent = !connected ? 'Not connected' : drives ? 'You drive' : 'Watching';
-    badge.dataset.state = !connected ? 'off' : drives ? 'driving' : 'watching';
+    const { connected, drives, viewers, volume, loading } = session;
+    badge.textContent = loading ? 'Loading' : !connected ? 'Not connected' : drives ? 'You drive' : 'Watching';
+    badge.dataset.state = loading ? 'loading' : !connected ? 'off' : drives ? 'driving' : 'watching';
     badge.title = connected ? `${viewers} ${viewers === 1 ? 'page' : 'pages'} on this session` : '';
     takeOver.hidden = !connected || drives;
     editing.disabled = !drives;

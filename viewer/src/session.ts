@@ -55,7 +55,7 @@ export class Session {
   }
 
   get connected(): boolean {
-    return this.connection_.current === 'open' && this.edits !== null && this.viewer > 0;
+    return this.connection_.current === 'open' && this.edits !== null && this.viewer > 0 && !this.failed;
   }
 
   get drives(): boolean {
@@ -236,7 +236,9 @@ export class Session {
         return this.changed.emit('status');
       case 'failed':
         this.failed = message;
-        return this.changed.emit('connection');
+        this.dropInputs();
+        this.changed.emit('connection');
+        return this.changed.emit('scene');
       case 'pong': return;
     }
   }
