@@ -12,12 +12,13 @@
 #include "worker/kernels/scene_terms.h"
 #include "worker/kernels/transfer_table.h"
 #include "worker/kernels/visible_cells.h"
+#include "worker/kernels/wide_commit.h"
 
 namespace goldthread {
 
 class CommittedScene {
  public:
-  CommittedScene(const Scene& scene, std::shared_ptr<const Volume> volume)
+  CommittedScene(const Scene& scene, std::shared_ptr<const Volume> volume, Addressing addressing)
       : volume_(std::move(volume)), lights_(scene.lights) {
     const VolumeInfo& info = volume_->info();
     const SceneVolume material = in_computing_space(scene.volumes.front(), scene.image.color_space);
@@ -41,8 +42,7 @@ class CommittedScene {
       terms_.transfer = rows_->view();
     }
     commit_cells(features_.dvr ? function : nullptr, material);
-    kernel_ =
-        find_kernel(features_, storage_of(info.type), addressing_of(volume_->layout(), info.type));
+    kernel_ = find_kernel(features_, storage_of(info.type), addressing);
   }
 
   CommittedScene(const CommittedScene&) = delete;
@@ -108,8 +108,15 @@ class RayCaster final : public SampleSource {
 }  // namespace
 
 std::shared_ptr<const CommittedScene> commit_scene(const Scene& scene,
+                                                   std::shared_ptr<const Volume> volume,
+                                                   Addressing addressing) {
+  return std::make_shared<const CommittedScene>(scene, std::move(volume), addressing);
+}
+
+std::shared_ptr<const CommittedScene> commit_scene(const Scene& scene,
                                                    std::shared_ptr<const Volume> volume) {
-  return std::make_shared<const CommittedScene>(scene, std::move(volume));
+  const Addressing addressing = addressing_of(volume->layout(), volume->info().type);
+  return commit_scene(scene, std::move(volume), addressing);
 }
 
 std::vector<std::string> feature_names(const CommittedScene& scene) {

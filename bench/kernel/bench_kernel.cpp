@@ -9,7 +9,7 @@
 #include <chrono>
 #include <cmath>
 #include <cstdlib>
-#include <cstring>
+#include <ctime>
 #include <fstream>
 #include <functional>
 #include <numbers>
@@ -130,21 +130,24 @@ std::string measure(const std::string& name, const Scene& scene,
   const auto source = make_ray_caster(committed, *scene.camera, scene.image.size);
   const auto positions = tiled_positions(options.size);
   std::vector<Sample> samples(positions.size());
-  std::vector<double> seconds;
+  std::vector<double> seconds, processor;
   CastCounts counts;
   for (int i = 0; i < options.repeats; ++i) {
     const auto start = std::chrono::steady_clock::now();
+    const std::clock_t processor_start = std::clock();
     counts = render(*source, options.threads, positions, samples);
     seconds.push_back(
         std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count());
+    processor.push_back(double(std::clock() - processor_start) / CLOCKS_PER_SEC);
   }
   if (!options.pictures.empty())
     write_picture(options.pictures + name + ".rgb32f", positions, samples, options.size);
   std::sort(seconds.begin(), seconds.end());
+  std::sort(processor.begin(), processor.end());
   return fmt::format(
-      R"("{}": {{"kernel": "{}", "median": {:.6f}, "least": {:.6f}, "commit": {:.6f}, "samples": {}}})",
-      name, kernel_name(*committed), seconds[seconds.size() / 2], seconds.front(), commit.count(),
-      counts.samples);
+      R"("{}": {{"kernel": "{}", "median": {:.6f}, "cpu": {:.6f}, "commit": {:.6f}, "samples": {}}})",
+      name, kernel_name(*committed), seconds[seconds.size() / 2], processor[processor.size() / 2],
+      commit.count(), counts.samples);
 }
 
 std::string list_of(const glm::dvec3& v) { return fmt::format("[{}, {}, {}]", v.x, v.y, v.z); }

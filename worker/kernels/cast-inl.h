@@ -36,16 +36,16 @@ HWY_NOINLINE CastCounts cast(const CastArguments& arguments) {
     RayArrays arrays;
     set_up_rays(arguments.scene, arguments.view, arguments.positions.data() + begin, count, arrays);
     const Rays rays(arrays);
-    const auto finish = [&](auto& packet) HWY_ATTR {
-      counts.samples += packet.run();
-      write_samples(packet.color(), packet.alpha(), arguments.samples.data() + begin, count);
-    };
+    Sample* samples = arguments.samples.data() + begin;
+    // The packet must not leave this function, not even into a lambda: it lives in registers.
     if constexpr (kFeatures.mip) {
       GreatestValue<FieldType> packet(arguments, rays);
-      finish(packet);
+      counts.samples += packet.run();
+      write_samples(packet.color(), packet.alpha(), samples, count);
     } else {
       RayMarch<FieldType, kFeatures> packet(arguments, rays);
-      finish(packet);
+      counts.samples += packet.run();
+      write_samples(packet.color(), packet.alpha(), samples, count);
     }
   }
   return counts;

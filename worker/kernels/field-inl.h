@@ -77,24 +77,49 @@ class Field {
             hn::Sub(position.z, hn::ConvertTo(kFloats, z))};
   }
 
-  /// Not finite where one of the eight voxels is not.
-  HWY_INLINE Floats value(const Place& at) const {
-    const auto x = part<0>(at.x);
-    const auto y0 = part<1>(at.y) + x, y1 = part<1>(next(at.y)) + x;
-    const auto z0 = part<2>(at.z), z1 = part<2>(next(at.z));
-    const Floats low = lerp(along_x(y0 + z0, at.fx), along_x(y1 + z0, at.fx), at.fy);
-    const Floats high = lerp(along_x(y0 + z1, at.fx), along_x(y1 + z1, at.fx), at.fy);
-    return lerp(low, high, at.fz);
+  /// What the value and the gradient at a place both read: of uint8, x − 1 … x + 2 in the four
+  /// rows of the cell; of wider voxels nothing, they take other words for each.
+  struct Words {
+    Ints row[kStorage == Storage::kUInt8 ? 4 : 1];
+  };
+  HWY_INLINE Words words(const Place& at) const {
+    if constexpr (kStorage == Storage::kUInt8) {
+      const auto x = part<0>(at.x);
+      const auto y0 = part<1>(at.y) + x, y1 = part<1>(next(at.y)) + x;
+      const auto z0 = part<2>(at.z), z1 = part<2>(next(at.z));
+      return {{word<-1>(y0 + z0), word<-1>(y1 + z0), word<-1>(y0 + z1), word<-1>(y1 + z1)}};
+    } else {
+      return {{hn::Zero(kInts)}};
+    }
   }
+
+  /// Not finite where one of the eight voxels is not.
+  HWY_INLINE Floats value(const Place& at, const Words& words) const {
+    Floats rows[4];
+    if constexpr (kStorage == Storage::kUInt8) {
+      for (int i = 0; i < 4; ++i)
+        rows[i] = lerp(bits_of<8, 8>(words.row[i]), bits_of<16, 8>(words.row[i]), at.fx);
+    } else {
+      const auto x = part<0>(at.x);
+      const auto y0 = part<1>(at.y) + x, y1 = part<1>(next(at.y)) + x;
+      const auto z0 = part<2>(at.z), z1 = part<2>(next(at.z));
+      rows[0] = along_x(y0 + z0, at.fx), rows[1] = along_x(y1 + z0, at.fx);
+      rows[2] = along_x(y0 + z1, at.fx), rows[3] = along_x(y1 + z1, at.fx);
+    }
+    return lerp(lerp(rows[0], rows[1], at.fy), lerp(rows[2], rows[3], at.fy), at.fz);
+  }
+  HWY_INLINE Floats value(const Place& at) const { return value(at, words(at)); }
 
   /// Central differences at the voxels, interpolated trilinearly, per voxel. Beyond the border the
   /// border's voxel is repeated. Equal voxels give exactly 0.
-  HWY_INLINE Floats3 gradient(const Place& at) const {
+  HWY_INLINE Floats3 gradient(const Place& at, const Words& words) const {
     const auto x = part<0>(at.x);
     const auto y = part<1>(at.y) + x, y_next = part<1>(next(at.y)) + x;
     const auto z = part<2>(at.z), z_next = part<2>(next(at.z));
-    const Row r00 = row(y + z, at.fx), r10 = row(y_next + z, at.fx);
-    const Row r01 = row(y + z_next, at.fx), r11 = row(y_next + z_next, at.fx);
+    const Row r00 = row(word_of(words, 0), y + z, at.fx);
+    const Row r10 = row(word_of(words, 1), y_next + z, at.fx);
+    const Row r01 = row(word_of(words, 2), y + z_next, at.fx);
+    const Row r11 = row(word_of(words, 3), y_next + z_next, at.fx);
     const Floats slope_x =
         lerp(lerp(r00.slope, r10.slope, at.fy), lerp(r01.slope, r11.slope, at.fy), at.fz);
 
@@ -188,11 +213,15 @@ class Field {
     }
   }
 
+  static HWY_INLINE Ints word_of(const Words& words, int i) {
+    return words.row[kStorage == Storage::kUInt8 ? i : 0];
+  }
+
+  /// `four` is the row's word of uint8 voxels, taken before.
   template <class Offset>
-  HWY_INLINE Row row(Offset at, Floats fraction) const {
+  HWY_INLINE Row row(Ints four, Offset at, Floats fraction) const {
     Floats v0, v1, v2, v3;
     if constexpr (kStorage == Storage::kUInt8) {
-      const Ints four = word<-1>(at);
       v0 = bits_of<0, 8>(four), v1 = bits_of<8, 8>(four);
       v2 = bits_of<16, 8>(four), v3 = bits_of<24, 8>(four);
     } else if constexpr (kStorage == Storage::kUInt16) {

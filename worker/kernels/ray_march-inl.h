@@ -50,7 +50,7 @@ class RayMarch {
   }
 
   HWY_INLINE const Floats3& color() const { return color_; }
-  HWY_INLINE Floats alpha() const { return hn::Sub(hn::Set(kFloats, 1.0F), transmittance_); }
+  HWY_INLINE Floats alpha() const { return alpha_; }
 
  private:
   /// Takes each lane that needs it to its next segment that may show something.
@@ -103,7 +103,8 @@ class RayMarch {
   HWY_INLINE void add_interval(FloatMask active, Floats begin, Floats end) {
     const Floats3 position = rays_.at(middle(begin, end), scene_.field.upper);
     const auto place = field_.locate(position);
-    const Floats value = field_.value(place);
+    const auto words = field_.words(place);
+    const Floats value = field_.value(place, words);
     samples_ += hn::CountTrue(kFloats, active);
     const FloatMask seen = hn::And(active, is_finite(value));
     const Optics optics = look_up(scene_.transfer, hn::IfThenElseZero(seen, value));
@@ -113,7 +114,7 @@ class RayMarch {
     Floats3 color = optics.color;
     if constexpr (kFeatures.shading) {
       color =
-          shade(scene_.phong, lights_, color, field_.gradient(place), position, rays_.direction);
+          shade(scene_.phong, lights_, color, field_.gradient(place, words), position, rays_.direction);
     }
     composite(color, one_minus_exp(depth));
   }
@@ -123,7 +124,9 @@ class RayMarch {
     color_.x = hn::MulAdd(weight, color.x, color_.x);
     color_.y = hn::MulAdd(weight, color.y, color_.y);
     color_.z = hn::MulAdd(weight, color.z, color_.z);
-    transmittance_ = hn::Sub(transmittance_, weight);
+    // Opacity is summed up, not transmittance taken down: what is thin keeps its digits.
+    alpha_ = hn::Add(alpha_, weight);
+    transmittance_ = hn::Sub(hn::Set(kFloats, 1.0F), alpha_);
   }
 
   /// Goes through the surfaces of a segment in the order in which a rising or falling field meets
@@ -172,7 +175,9 @@ class RayMarch {
       const auto flat = hn::Eq(difference, zero);
       const Floats fraction =
           hn::Div(hn::Neg(at_begin), hn::IfThenElse(flat, hn::Set(kFloats, 1.0F), difference));
-      const Floats inside = hn::Min(hn::Max(fraction, zero), hn::Set(kFloats, 1.0F));
+      // A bad voxel between the ends makes the fraction NaN.
+      const Floats usable = hn::IfThenElseZero(is_finite(fraction), fraction);
+      const Floats inside = hn::Min(hn::Max(usable, zero), hn::Set(kFloats, 1.0F));
       root = hn::MulAdd(inside, hn::Sub(end, begin), begin);
       const Floats at_root = hn::Sub(value_at(root), isovalue);
       const auto other_side = hn::Xor(hn::Lt(at_root, zero), hn::Lt(at_begin, zero));
@@ -193,7 +198,8 @@ class RayMarch {
                   chosen(up.color[2], down.color[2])};
     if constexpr (kFeatures.shading) {
       const Floats3 position = rays_.at(steps, scene_.field.upper);
-      color = shade(scene_.phong, lights_, color, field_.gradient(field_.locate(position)),
+      const auto place = field_.locate(position);
+      color = shade(scene_.phong, lights_, color, field_.gradient(place, field_.words(place)),
                     position, rays_.direction);
     }
     composite(color, hn::IfThenElseZero(hit, chosen(up.opacity, down.opacity)));
@@ -208,7 +214,8 @@ class RayMarch {
 
   Floats index_ = hn::Zero(kFloats);        ///< the segment that comes next
   Floats known_until_ = hn::Zero(kFloats);  ///< from this segment on the cells must be asked
-  Floats transmittance_ = hn::Set(kFloats, 1.0F);
+  Floats alpha_ = hn::Zero(kFloats);
+  Floats transmittance_ = hn::Set(kFloats, 1.0F);  ///< 1 − alpha_
   Floats3 color_{hn::Zero(kFloats), hn::Zero(kFloats), hn::Zero(kFloats)};
   Floats value_ = hn::Zero(kFloats);  ///< of the field where segment index_ begins
   FloatMask value_is_stale_ = hn::MaskFromVec(hn::BitCast(kFloats, hn::Set(kInts, -1)));

@@ -19,6 +19,55 @@ struct Optics {
   Floats extinction;  ///< 1/mm
 };
 
+#if HWY_TARGET == HWY_SCALAR
+HWY_INLINE Optics interpolated_rows(const float* rows, Ints row, Floats fraction) {
+  const float* first = rows + 4 * hn::GetLane(row);
+  const auto column = [&](int c) HWY_ATTR {
+    return lerp(hn::Set(kFloats, first[c]), hn::Set(kFloats, first[4 + c]), fraction);
+  };
+  return {{column(0), column(1), column(2)}, column(3)};
+}
+#else
+/// Rows of four floats of as many lanes as a vector has blocks of 128 bits: block b is the row of
+/// lane 4b + `first`. Whole rows are one load each; gathers of single floats took four.
+template <class D>
+HWY_INLINE hn::Vec<D> load_rows(D d, const float* rows, const std::int32_t* row) {
+  if constexpr (hn::MaxLanes(D()) == 4) {
+    return hn::LoadU(d, rows + 4 * std::ptrdiff_t(row[0]));
+  } else {
+    const hn::Half<D> half;
+    const auto low = load_rows(half, rows, row);
+    const auto high = load_rows(half, rows, row + hn::MaxLanes(D()) / 2);
+    return hn::Combine(d, high, low);
+  }
+}
+
+/// For lanes 4b + k: their rows and the ones after them, interpolated; still a row per block.
+template <int kLane>
+HWY_INLINE Floats interpolated_block(const float* rows, const std::int32_t* row, Floats fraction) {
+  const Floats here = load_rows(kFloats, rows, row + kLane);
+  const Floats after = load_rows(kFloats, rows + 4, row + kLane);
+  return lerp(here, after, hn::Broadcast<kLane>(fraction));
+}
+
+HWY_INLINE Optics interpolated_rows(const float* rows, Ints row, Floats fraction) {
+  HWY_ALIGN std::int32_t lanes[hn::MaxLanes(kInts)];
+  hn::Store(row, kInts, lanes);
+  const Floats r0 = interpolated_block<0>(rows, lanes, fraction);
+  const Floats r1 = interpolated_block<1>(rows, lanes, fraction);
+  const Floats r2 = interpolated_block<2>(rows, lanes, fraction);
+  const Floats r3 = interpolated_block<3>(rows, lanes, fraction);
+  // Rows to columns, inside each block of 128 bits.
+  const Floats low02 = hn::InterleaveLower(kFloats, r0, r2);
+  const Floats low13 = hn::InterleaveLower(kFloats, r1, r3);
+  const Floats high02 = hn::InterleaveUpper(kFloats, r0, r2);
+  const Floats high13 = hn::InterleaveUpper(kFloats, r1, r3);
+  return {{hn::InterleaveLower(kFloats, low02, low13), hn::InterleaveUpper(kFloats, low02, low13),
+           hn::InterleaveLower(kFloats, high02, high13)},
+          hn::InterleaveUpper(kFloats, high02, high13)};
+}
+#endif
+
 /// `value` must be finite.
 HWY_INLINE Optics look_up(const TransferTable& table, Floats value) {
   const Floats exact = hn::Mul(hn::Sub(value, hn::Set(kFloats, table.first_value)),
@@ -26,13 +75,7 @@ HWY_INLINE Optics look_up(const TransferTable& table, Floats value) {
   const Floats place = hn::Min(hn::Max(exact, hn::Zero(kFloats)), hn::Set(kFloats, table.last_row));
   const Ints row =
       hn::Min(hn::ConvertTo(kInts, place), hn::Set(kInts, std::int32_t(table.last_row) - 1));
-  const Floats fraction = hn::Sub(place, hn::ConvertTo(kFloats, row));
-  const Ints index = hn::ShiftLeft<2>(row);
-  const auto column = [&](int c) HWY_ATTR {
-    return lerp(hn::GatherIndex(kFloats, table.rows + c, index),
-                hn::GatherIndex(kFloats, table.rows + 4 + c, index), fraction);
-  };
-  return {{column(0), column(1), column(2)}, column(3)};
+  return interpolated_rows(table.rows, row, hn::Sub(place, hn::ConvertTo(kFloats, row)));
 }
 
 }  // namespace goldthread::HWY_NAMESPACE

@@ -41,9 +41,10 @@ TEST_F(Head, HalvingTheStepQuartersTheError) {
   Scene scene = head_scene(volume()->info());
   scene.step_mm = 1.0;
   const Distance coarse = error_of(scene, 16);
-  scene.step_mm = 0.25;
+  scene.step_mm = 0.5;
   const Distance fine = error_of(scene, 16);
-  EXPECT_LT(fine.rms, coarse.rms / 8);
+  // Below, what early termination leaves out shows: 0.02/255.
+  EXPECT_LT(fine.rms, coarse.rms / 3.5);
 }
 
 TEST_F(Head, ShadedIsWithinOne255thOfTheReferenceAtTheDefaultStep) {

@@ -1,0 +1,132 @@
+// SPDX-License-Identifier: Apache-2.0
+// What a commit makes of a transfer function: the table, and the cells that it makes visible.
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <random>
+
+#include "cast_support.h"
+#include "worker/kernels/scene_terms.h"
+#include "worker/kernels/transfer_table.h"
+#include "worker/kernels/visible_cells.h"
+
+namespace goldthread::test {
+namespace {
+
+VolumeInfo info_of(VoxelType type, double minimum, double maximum) {
+  VolumeInfo info;
+  info.type = type;
+  info.minimum = minimum;
+  info.maximum = maximum;
+  return info;
+}
+
+double extinction_in(const TransferTable& table, double stored) {
+  const double place =
+      std::clamp((stored - double(table.first_value)) * double(table.rows_per_value), 0.0,
+                 double(table.last_row));
+  const double row = std::min(std::floor(place), double(table.last_row) - 1);
+  const float* rows = table.rows + 4 * std::size_t(row);
+  return rows[3] + (place - row) * (double(rows[7]) - rows[3]);
+}
+
+TEST(TransferTable, AFeatureOneValueWideIsKeptInIntegerData) {
+  const TransferFunction function{.color = {{0, {1, 1, 1}}},
+                                  .opacity = {{79, 0}, {80, 0.9}, {81, 0}}};
+  for (const auto& info :
+       {info_of(VoxelType::kUInt8, 0, 255), info_of(VoxelType::kInt16, -1024, 3071)}) {
+    const double bias = info.type == VoxelType::kInt16 ? -32768 : 0;
+    const TransferRows rows(function, info, bias, 1);
+    for (const double value : {70.0, 79.0, 80.0, 81.0, 90.0})
+      EXPECT_NEAR(extinction_in(rows.view(), value - bias), function.extinction_at(value), 1e-5)
+          << value;
+  }
+}
+
+TEST(TransferTable, NarrowFeaturesInFloatDataGetRowsEnough) {
+  const TransferFunction function{.color = {{0, {1, 1, 1}}},
+                                  .opacity = {{0, 0}, {499, 0}, {500, 0.5}, {501, 0}, {1000, 0}}};
+  const TransferRows rows(function, info_of(VoxelType::kFloat32, 0, 1000), 0, 1);
+  double worst = 0;
+  for (double value = 498; value < 502; value += 0.003)
+    worst = std::max(worst,
+                     std::abs(extinction_in(rows.view(), value) - function.extinction_at(value)));
+  EXPECT_LT(worst, 0.03);
+}
+
+TEST(TransferTable, AConstantVolumeHasATable) {
+  const TransferFunction function{.color = {{0, {1, 1, 1}}}, .opacity = {{0, 0}, {100, 0.5}}};
+  for (const VoxelType type : {VoxelType::kUInt8, VoxelType::kFloat32}) {
+    const TransferRows rows(function, info_of(type, 50, 50), 0, 1);
+    EXPECT_NEAR(extinction_in(rows.view(), 50), function.extinction_at(50), 1e-7);
+  }
+}
+
+TEST(VisibleCells, ACellIsInvisibleExactlyWhereExtinctionIsZeroOverItsRange) {
+  const TransferFunction function{
+      .color = {},
+      .opacity = {
+          {10, 0}, {20, 0}, {25, 0.5}, {30, 0}, {40, 0}, {40, 0.1}, {40, 0}, {50, 0}, {60, 0.2}}};
+  const CellVisibility visible(&function, {}, 0);
+  std::mt19937 random(5);
+  for (int trial = 0; trial < 2000; ++trial) {
+    const double low = double(random() % 140) / 2, high = low + double(random() % 30) / 2;
+    bool expected = false;
+    for (double value = low; value <= high; value += 0.0625)
+      expected = expected || function.extinction_at(value) > 0;
+    // The spike at 40 has no width; whoever spans it sees it in the nodes.
+    expected = expected || (low <= 40 && 40 <= high);
+    EXPECT_EQ(visible({float(low), float(high)}), expected) << low << ' ' << high;
+  }
+}
+
+TEST(VisibleCells, ACellWithoutFiniteVoxelsIsInvisible) {
+  const TransferFunction function{.color = {}, .opacity = {{0, 1}}};
+  const CellVisibility visible(&function, {}, 0);
+  EXPECT_FALSE(visible({INFINITY, -INFINITY}));
+  EXPECT_TRUE(visible({0, 0}));
+}
+
+TEST(VisibleCells, ACellThatHoldsAnIsovalueIsVisible) {
+  const std::vector<Isosurface> surfaces{{.value = 5}, {.value = -3}};
+  const CellVisibility visible(nullptr, surfaces, -10);
+  EXPECT_TRUE(visible({15, 20}));
+  EXPECT_TRUE(visible({0, 7}));
+  EXPECT_FALSE(visible({8, 14}));
+}
+
+TEST(VisibleCells, DistancesAreChebyshevs) {
+  const glm::ivec3 counts(13, 9, 7);
+  std::vector<CellRange> cells(std::size_t(counts.x * counts.y * counts.z), {0, 0});
+  std::vector<glm::ivec3> seen;
+  std::mt19937 random(2);
+  for (int n = 0; n < 4; ++n) {
+    const glm::ivec3 c(random() % 13, random() % 9, random() % 7);
+    cells[std::size_t((c.z * counts.y + c.y) * counts.x + c.x)] = {1, 1};
+    seen.push_back(c);
+  }
+  const std::vector<Isosurface> surfaces{{.value = 1}};
+  const auto distances = distances_to_visible(cells, counts, CellVisibility(nullptr, surfaces, 0));
+  for (int z = 0; z < counts.z; ++z)
+    for (int y = 0; y < counts.y; ++y)
+      for (int x = 0; x < counts.x; ++x) {
+        int expected = 255;
+        for (const glm::ivec3& c : seen) {
+          const glm::ivec3 d = glm::abs(c - glm::ivec3(x, y, z));
+          expected = std::min(expected, std::max({d.x, d.y, d.z}));
+        }
+        EXPECT_EQ(distances[std::size_t((z * counts.y + y) * counts.x + x)], expected);
+      }
+}
+
+TEST(Step, DefaultsToHalfTheSmallestSpacingAndNeverNeedsTooManySegments) {
+  const VolumeGeometry geometry{.size = {100, 100, 100}, .spacing_mm = {1, 2, 0.6}};
+  EXPECT_DOUBLE_EQ(step_of(0, geometry), 0.3);
+  EXPECT_DOUBLE_EQ(step_of(0.7, geometry), 0.7);
+  EXPECT_GT(step_of(1e-30, geometry), 1e-4);
+}
+
+}  // namespace
+}  // namespace goldthread::test
