@@ -15,15 +15,16 @@ namespace goldthread {
 namespace {
 
 constexpr std::chrono::milliseconds kIdleWait{50};
+constexpr std::chrono::seconds kFarewell{2};
 
 }  // namespace
 
 CompositorRole::CompositorRole(Transport& transport) : post_(transport) {}
 
-void CompositorRole::run() {
+bool CompositorRole::run() {
   post_.to_master(Hello{kProtocolVersion, GOLDTHREAD_VERSION, Role::kCompositor, host_name(),
                         node_key(), usable_cores()});
-  while (!stopped_) {
+  while (!stop_) {
     try {
       while (auto message = post_.receive<ToCompositor>()) {
         const auto begin = std::chrono::steady_clock::now();
@@ -31,13 +32,15 @@ void CompositorRole::run() {
         busy_ += std::chrono::steady_clock::now() - begin;
       }
       forward_input();
+      heartbeat_.beat(post_);
     } catch (const FatalError& error) {
       post_.to_master(RankFailed{error.failure()});
     }
-    if (!stopped_) post_.wait(kIdleWait);
+    if (!stop_) post_.wait(kIdleWait);
   }
   gateway_.reset();
-  post_.flush(std::chrono::seconds(2));
+  post_.flush(kFarewell);
+  return !stop_->ranks_lost;
 }
 
 void CompositorRole::on(const BeginSession& message) {
@@ -46,8 +49,8 @@ void CompositorRole::on(const BeginSession& message) {
 
 void CompositorRole::on(BeginView message) {
   if (!message.grid.valid()) {
-    throw FatalError({"rank " + std::to_string(post_.rank().value), "was given a view without pixels",
-                      "", ExitStatus::kClusterFailed});
+    throw FatalError({"rank " + std::to_string(post_.rank().value),
+                      "was given a view without pixels", "", ExitStatus::kClusterFailed});
   }
   const Topology topology{compositors_, 1};
   const Band band = band_of(message.grid, topology.compositor_index(post_.rank()), compositors_);
@@ -147,7 +150,7 @@ void CompositorRole::on(const ReportCounters&) {
   post_.to_master(Counters{post_.sent(), std::chrono::duration<double>(busy_).count()});
 }
 
-void CompositorRole::on(const Stop&) { stopped_ = true; }
+void CompositorRole::on(const Stop& message) { stop_ = message; }
 
 void CompositorRole::forward_input() {
   if (!gateway_) return;

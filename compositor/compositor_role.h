@@ -8,6 +8,7 @@
 #include <optional>
 #include <vector>
 
+#include "common/transport/heartbeat.h"
 #include "common/transport/post.h"
 #include "compositor/gateway/gateway.h"
 #include "compositor/picture_assembly.h"
@@ -18,8 +19,9 @@ namespace goldthread {
 class CompositorRole {
  public:
   explicit CompositorRole(Transport& transport);
-  /// Serves until the master says stop. What fails is told to the master, which ends the job.
-  void run();
+  /// Serves until the master says stop. What fails is told to the master, which ends the job. True
+  /// if no rank was lost meanwhile.
+  bool run();
 
  private:
   void on(const BeginSession& message);
@@ -39,7 +41,8 @@ class CompositorRole {
   std::size_t bands_with_pixels() const;
 
   Post post_;
-  bool stopped_ = false;
+  HeartbeatSender heartbeat_;
+  std::optional<Stop> stop_;
   int compositors_ = 1;
   std::optional<BeginView> view_;
   std::optional<SampleArray> samples_;

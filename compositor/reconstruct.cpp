@@ -44,7 +44,8 @@ void reconstruct_tile(const TileSamples& tile, const Color& background, int band
   const auto level = tile.level();
   const int spacing = level ? level->spacing_px() : 0;
   for (int y = 0; y < rect.height; ++y) {
-    const auto first = std::size_t(rect.y - band_top + y) * std::size_t(image_width) + std::size_t(rect.x);
+    const auto first =
+        std::size_t(rect.y - band_top + y) * std::size_t(image_width) + std::size_t(rect.x);
     float* out = pixels.data() + 4 * first;
     if (spacing > 1) {
       const int y0 = y / spacing * spacing;
@@ -69,9 +70,10 @@ struct ErrorSum {
       const double half = 0.5 * (double(b) - 0.5 * (double(a) + double(c)));
       return half * half;
     };
-    squares += (square(before.red, at.red, after.red) + square(before.green, at.green, after.green) +
-                square(before.blue, at.blue, after.blue)) /
-               3;
+    squares +=
+        (square(before.red, at.red, after.red) + square(before.green, at.green, after.green) +
+         square(before.blue, at.blue, after.blue)) /
+        3;
     ++count;
   }
 };

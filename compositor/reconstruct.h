@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// From samples to pixels: bilinear between the samples of each tile's own level, over the background.
-// Pure. A pixel on a sample gets exactly that sample, so that a picture at the pixel level holds the
-// rays' results and nothing else.
+// From samples to pixels: bilinear between the samples of each tile's own level, over the
+// background. Pure. A pixel on a sample gets exactly that sample, so that a picture at the pixel
+// level holds the rays' results and nothing else.
 
 #include <cstdint>
 #include <glm/glm.hpp>

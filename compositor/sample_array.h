@@ -20,7 +20,9 @@ class TileSamples {
   explicit TileSamples(PixelRect rect);
 
   const PixelRect& rect() const { return rect_; }
-  const Sample& at(int x, int y) const { return samples_[static_cast<std::size_t>(y * stride_ + x)]; }
+  const Sample& at(int x, int y) const {
+    return samples_[static_cast<std::size_t>(y * stride_ + x)];
+  }
   const Sample* row(int y) const { return &samples_[static_cast<std::size_t>(y * stride_)]; }
   int stride() const { return stride_; }
   /// The finest level that is whole; nothing if not even the first has come.

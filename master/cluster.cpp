@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "common/scene/scene_file.h"
+#include "common/transport/heartbeat.h"
 #include "common/transport/shared_memory.h"
 
 namespace goldthread {
@@ -13,6 +14,7 @@ namespace {
 
 constexpr std::chrono::seconds kGreetingTimeout{60};
 constexpr std::chrono::milliseconds kIdleWait{50};
+constexpr std::chrono::seconds kFarewell{2};
 
 std::string rank_name(Rank rank, const RankState& state) {
   return "rank " + std::to_string(rank.value) + (state.host.empty() ? "" : " on " + state.host);
@@ -38,12 +40,12 @@ void Cluster::greet() {
   };
   while (silent() != ranks_.end()) {
     if (Clock::now() > end) {
-      throw FatalError({"rank " + std::to_string(silent() - ranks_.begin()),
-                        "did not say hello within " + std::to_string(kGreetingTimeout.count()) + " s",
-                        "look at that host's log", ExitStatus::kClusterFailed});
+      throw FatalError(
+          {"rank " + std::to_string(silent() - ranks_.begin()),
+           "did not say hello within " + std::to_string(kGreetingTimeout.count()) + " s",
+           "look at that host's log", ExitStatus::kClusterFailed});
     }
-    if (auto message = post_.receive<ToMaster>()) handle(message->first, std::move(message->second));
-    else post_.wait(kIdleWait);
+    if (!handle_one()) post_.wait(kIdleWait);
   }
   begin_session();
 }
@@ -67,6 +69,7 @@ void Cluster::on(Rank from, Hello message) {
 
 void Cluster::begin_session() {
   ranks_[0].host = host_name();
+  liveness_.watch(topology_.size(), Clock::now());
   std::vector<int> capacity;
   for (int i = 0; i < topology_.size(); ++i) {
     RankState& state = ranks_[static_cast<std::size_t>(i)];
@@ -77,9 +80,8 @@ void Cluster::begin_session() {
       });
       capacity.push_back(0);
       const int cores = state.threads;
-      capacity.back() = options_.threads > 0
-                            ? options_.threads
-                            : std::max(1, cores / static_cast<int>(neighbours));
+      capacity.back() = options_.threads > 0 ? options_.threads
+                                             : std::max(1, cores / static_cast<int>(neighbours));
     }
     if (state.role == Role::kCompositor) {
       post_.to_compositor(rank, BeginSession{1, options_.interactive,
@@ -108,8 +110,8 @@ VolumeInfo Cluster::load_volume(const SceneVolume& volume,
     }
   }
   while (std::cmp_less(mapped_, topology_.workers)) {
-    if (auto message = post_.receive<ToMaster>()) handle(message->first, std::move(message->second));
-    else post_.wait(kIdleWait);
+    if (!handle_one()) post_.wait(kIdleWait);
+    check_liveness();
   }
   progress_ = nullptr;
   return *volume_;
@@ -134,8 +136,7 @@ void Cluster::on(Rank, VolumeMapped) { ++mapped_; }
 
 void Cluster::commit(const Scene& scene) {
   ++revision_;
-  const CommitScene message{revision_, scene_to_json(scene, {.internal = true})};
-  for (int w = 0; w < topology_.workers; ++w) post_.to_worker(topology_.worker(w), message);
+  send_to_workers(CommitScene{revision_, scene_to_json(scene, {.internal = true})});
 }
 
 void Cluster::on(Rank, SceneCommitted message) {
@@ -160,12 +161,12 @@ void Cluster::begin_view(const Scene& scene, const TileGrid& grid, std::vector<L
     bands_[i] = {{}, 0, static_cast<double>(rect.width) * rect.height};
   }
   view_.begin = Clock::now();
-  const BeginView message{view_.epoch, revision_,         *scene.camera, grid,
-                          scene.image.background, scene.image.color_space};
+  const BeginView message{
+      view_.epoch, revision_, *scene.camera, grid, scene.image.background, scene.image.color_space};
   for (int c = 0; c < topology_.compositors; ++c) {
     post_.to_compositor(topology_.compositor(c), message);
   }
-  for (int w = 0; w < topology_.workers; ++w) post_.to_worker(topology_.worker(w), message);
+  send_to_workers(message);
   for (int w = 0; w < topology_.workers; ++w) supply(w);
 }
 
@@ -223,6 +224,43 @@ void Cluster::on(Rank from, BandReady message) {
 
 void Cluster::on(Rank, RankFailed message) { throw FatalError(std::move(message.failure)); }
 
+bool Cluster::handle_one() {
+  auto message = post_.receive<ToMaster>();
+  if (!message) return false;
+  const auto begin = Clock::now();
+  liveness_.heard(message->first, begin);
+  handle(message->first, std::move(message->second));
+  ranks_[0].busy_seconds += std::chrono::duration<double>(Clock::now() - begin).count();
+  return true;
+}
+
+void Cluster::check_liveness() {
+  for (const Rank rank : liveness_.newly_lost(Clock::now(), kSilence)) lose(rank);
+}
+
+void Cluster::lose(Rank rank) {
+  RankState& state = ranks_[static_cast<std::size_t>(rank.value)];
+  state.lost = true;
+  const bool any_worker = std::any_of(ranks_.begin(), ranks_.end(), [](const RankState& r) {
+    return r.role == Role::kWorker && !r.lost;
+  });
+  if (state.role != Role::kWorker || !any_worker || !volume_) {
+    throw FatalError({rank_name(rank, state),
+                      "has been silent for " + std::to_string(kSilence.count() / 1000) + " s",
+                      "look at that host's log, then start again", ExitStatus::kClusterFailed});
+  }
+  scheduler_.worker_lost(topology_.worker_index(rank));
+  for (int w = 0; w < topology_.workers; ++w) supply(w);
+  events_.push_back(WorkerLost{rank});
+}
+
+void Cluster::send_to_workers(const ToWorker& message) {
+  for (int w = 0; w < topology_.workers; ++w) {
+    const Rank rank = topology_.worker(w);
+    if (!liveness_.is_lost(rank)) post_.to_worker(rank, message);
+  }
+}
+
 void Cluster::handle(Rank from, ToMaster message) {
   std::visit([&](auto& value) { on(from, std::move(value)); }, message);
 }
@@ -230,12 +268,8 @@ void Cluster::handle(Rank from, ToMaster message) {
 std::optional<ClusterEvent> Cluster::poll(std::chrono::microseconds at_most) {
   const auto end = Clock::now() + at_most;
   while (events_.empty()) {
-    if (auto message = post_.receive<ToMaster>()) {
-      const auto begin = Clock::now();
-      handle(message->first, std::move(message->second));
-      ranks_[0].busy_seconds += std::chrono::duration<double>(Clock::now() - begin).count();
-      continue;
-    }
+    if (handle_one()) continue;
+    check_liveness();
     const auto left = std::chrono::duration_cast<std::chrono::microseconds>(end - Clock::now());
     if (left.count() <= 0) return {};
     post_.wait(left);
@@ -267,9 +301,7 @@ void Cluster::request_counters() {
   for (int c = 0; c < topology_.compositors; ++c) {
     post_.to_compositor(topology_.compositor(c), ReportCounters{});
   }
-  for (int w = 0; w < topology_.workers; ++w) {
-    post_.to_worker(topology_.worker(w), ReportCounters{});
-  }
+  send_to_workers(ReportCounters{});
 }
 
 void Cluster::on(Rank from, Counters message) {
@@ -280,7 +312,8 @@ void Cluster::on(Rank from, Counters message) {
 }
 
 bool Cluster::counters_complete() const {
-  return std::all_of(ranks_.begin(), ranks_.end(), [](const auto& r) { return r.counted; });
+  return std::all_of(ranks_.begin(), ranks_.end(),
+                     [](const auto& r) { return r.counted || r.lost; });
 }
 
 double Cluster::progress() const {
@@ -288,12 +321,14 @@ double Cluster::progress() const {
   return 1 - static_cast<double>(scheduler_.open()) / static_cast<double>(quanta_);
 }
 
-void Cluster::stop() {
+bool Cluster::stop() {
+  const bool lost = liveness_.any_lost();
   for (int c = 0; c < topology_.compositors; ++c) {
-    post_.to_compositor(topology_.compositor(c), Stop{});
+    post_.to_compositor(topology_.compositor(c), Stop{lost});
   }
-  for (int w = 0; w < topology_.workers; ++w) post_.to_worker(topology_.worker(w), Stop{});
-  post_.flush(std::chrono::seconds(2));
+  send_to_workers(Stop{lost});
+  post_.flush(kFarewell);
+  return !lost;
 }
 
 }  // namespace goldthread

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 // The cluster as the master sees it: greets the ranks, has the volume loaded once per node, commits
-// scenes, begins views and keeps every worker supplied with tiles. What a job (one picture, an orbit,
-// a session) needs to know comes out of poll() as events.
+// scenes, begins views and keeps every worker supplied with tiles. What a job (one picture, an
+// orbit, a session) needs to know comes out of poll() as events.
 
 #include <chrono>
 #include <deque>
@@ -16,6 +16,7 @@
 #include "common/scene/scene.h"
 #include "common/transport/post.h"
 #include "master/cost_history.h"
+#include "master/liveness.h"
 #include "master/scheduler.h"
 
 namespace goldthread {
@@ -31,11 +32,12 @@ struct RankState {
   Role role = Role::kWorker;
   std::string host;
   std::string node;
-  int threads = 1;         ///< cores of its node until the session begins, then compute threads
+  int threads = 1;  ///< cores of its node until the session begins, then compute threads
   bool greeted = false;
-  std::uint64_t tiles = 0;     ///< cast since the start
-  double busy_seconds = 0;     ///< thread time spent computing since the start
-  bool counted = false;        ///< has answered the last request_counters()
+  bool lost = false;               ///< silent for too long; gets no work any more
+  std::uint64_t tiles = 0;         ///< cast since the start
+  double busy_seconds = 0;         ///< thread time spent computing since the start
+  bool counted = false;            ///< has answered the last request_counters()
   std::vector<MessageCount> sent;  ///< as of that answer
 };
 
@@ -48,7 +50,7 @@ struct ViewState {
   std::size_t complete_levels = 0;  ///< of `levels`, held by the compositors
   std::uint64_t rays = 0;
   std::uint64_t samples = 0;
-  double squared_error = 0;         ///< estimated mean square, in units of 1, of the complete level
+  double squared_error = 0;  ///< estimated mean square, in units of 1, of the complete level
   std::chrono::duration<double> first_picture{0};  ///< until the first level was complete
   std::chrono::duration<double> complete{0};       ///< until the newest complete level was
   struct Tile {
@@ -64,10 +66,14 @@ struct ViewState {
   }
 };
 
+/// A worker went silent; its tiles were given to the others.
+struct WorkerLost {
+  Rank rank;
+};
 /// A further level of the view is complete at all compositors.
 struct LevelReady {};
-using ClusterEvent = std::variant<LevelReady, BandPicture, GatewayOpened, ViewerCamera, ViewerEdit,
-                                  ViewerSize, Audience>;
+using ClusterEvent = std::variant<LevelReady, WorkerLost, BandPicture, GatewayOpened, ViewerCamera,
+                                  ViewerEdit, ViewerSize, Audience>;
 
 class Cluster {
  public:
@@ -85,7 +91,8 @@ class Cluster {
   /// Stops handing out work of the view in progress: what is held stays as it is.
   void cancel_view();
 
-  /// Handles what has come; waits at most `at_most` if there is nothing. The next event for the job.
+  /// Handles what has come; waits at most `at_most` if there is nothing. The next event for the
+  /// job.
   std::optional<ClusterEvent> poll(std::chrono::microseconds at_most);
 
   /// Asks every rank what it has sent and how long it computed; poll() takes the answers in.
@@ -104,12 +111,13 @@ class Cluster {
   const std::string& kernel() const { return kernel_; }
   Post& post() { return post_; }
 
-  /// Ends the job on every other rank.
-  void stop();
+  /// Ends the job on every other rank. True if none was lost.
+  bool stop();
 
  private:
   void handle(Rank from, ToMaster message);
   void on(Rank from, Hello message);
+  void on(Rank, Heartbeat) {}
   void on(Rank from, LoadProgress message);
   void on(Rank from, VolumeLoaded message);
   void on(Rank from, VolumeMapped message);
@@ -123,6 +131,11 @@ class Cluster {
     events_.push_back(std::move(message));
   }
   void begin_session();
+  void send_to_workers(const ToWorker& message);
+  void check_liveness();
+  void lose(Rank rank);
+  /// Handles one message if there is one; false if there was none.
+  bool handle_one();
   void supply(int worker);
 
   Post post_;
@@ -139,6 +152,7 @@ class Cluster {
   std::vector<std::string> features_;
   std::string kernel_;
 
+  Liveness liveness_;
   CostHistory costs_;
   Scheduler scheduler_;
   Epoch epoch_;

@@ -14,8 +14,10 @@ void CostHistory::fit(const TileGrid& grid) {
 void CostHistory::record(TileId tile, std::uint64_t rays, std::chrono::microseconds cost) {
   if (tile.value >= us_per_ray_.size() || rays == 0) return;
   double& entry = us_per_ray_[tile.value];
-  if (entry < 0) ++known_;
-  else known_sum_ -= entry;
+  if (entry < 0)
+    ++known_;
+  else
+    known_sum_ -= entry;
   entry = static_cast<double>(cost.count()) / static_cast<double>(rays);
   known_sum_ += entry;
 }

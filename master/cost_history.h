@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// What each tile cost in the last frame, per ray, and what it will therefore cost in the next: VOL2's
-// observation that the last frame is the best predictor. Pure.
+// What each tile cost in the last frame, per ray, and what it will therefore cost in the next:
+// VOL2's observation that the last frame is the best predictor. Pure.
 
 #include <chrono>
 #include <cstdint>

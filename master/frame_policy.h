@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 // When a picture is shown and when a newer view takes over. Pure: values in, a decision out. Later
-// the temporal error of a moving view decides; now a time budget does: while input is waiting a view
-// is refined only as far as the budget allows, and shown once.
+// the temporal error of a moving view decides; now a time budget does: while input is waiting a
+// view is refined only as far as the budget allows, and shown once.
 
 #include <chrono>
 #include <cstdint>

@@ -8,9 +8,12 @@ namespace goldthread {
 
 constexpr const char* role_name(Role role) {
   switch (role) {
-    case Role::kMaster: return "master";
-    case Role::kCompositor: return "compositor";
-    case Role::kWorker: return "worker";
+    case Role::kMaster:
+      return "master";
+    case Role::kCompositor:
+      return "compositor";
+    case Role::kWorker:
+      return "worker";
   }
   return "";
 }

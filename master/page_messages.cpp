@@ -31,7 +31,8 @@ Json volume_of(const SceneVolume& entry, const VolumeInfo& info) {
   const glm::dvec3 center = world * glm::dvec4(0.5 * last, 1);
   double radius = 0;
   for (int corner = 0; corner < 8; ++corner) {
-    const glm::dvec3 index{corner & 1 ? last.x : 0, corner & 2 ? last.y : 0, corner & 4 ? last.z : 0};
+    const glm::dvec3 index{corner & 1 ? last.x : 0, corner & 2 ? last.y : 0,
+                           corner & 4 ? last.z : 0};
     radius = std::max(radius, glm::distance(center, glm::dvec3(world * glm::dvec4(index, 1))));
   }
   return {{"name", entry.name},
@@ -47,16 +48,14 @@ Json volume_of(const SceneVolume& entry, const VolumeInfo& info) {
 Json rank_of(const Cluster& cluster, std::size_t i, const SessionPulse& pulse) {
   const RankState& rank = cluster.ranks()[i];
   const double before = i < pulse.busy_before.size() ? pulse.busy_before[i] : 0;
-  const double capacity = pulse.seconds * std::max(1, rank.role == Role::kWorker ? rank.threads : 1);
+  const double capacity =
+      pulse.seconds * std::max(1, rank.role == Role::kWorker ? rank.threads : 1);
   const double busy =
       capacity > 0 ? std::clamp((rank.busy_seconds - before) / capacity, 0.0, 1.0) : 0;
   constexpr double kIdleBelow = 0.01;
-  return {{"rank", i},
-          {"role", role_name(rank.role)},
-          {"host", rank.host},
-          {"state", busy > kIdleBelow ? "busy" : "idle"},
-          {"busy", busy},
-          {"tiles", rank.tiles}};
+  return {{"rank", i},         {"role", role_name(rank.role)},
+          {"host", rank.host}, {"state", rank.lost ? "lost" : busy > kIdleBelow ? "busy" : "idle"},
+          {"busy", busy},      {"tiles", rank.tiles}};
 }
 
 Json failure_of(const char* type, const Failure& failure) {
@@ -96,12 +95,15 @@ std::string refused_message(std::uint32_t serial, const Failure& failure) {
   return text_of(message);
 }
 
-std::string failed_message(const Failure& failure) { return text_of(failure_of("failed", failure)); }
+std::string failed_message(const Failure& failure) {
+  return text_of(failure_of("failed", failure));
+}
 
 std::string status_message(const Cluster& cluster, const SessionPulse& pulse) {
   const ViewState& view = cluster.view();
   Json ranks = Json::array();
-  for (std::size_t i = 0; i < cluster.ranks().size(); ++i) ranks.push_back(rank_of(cluster, i, pulse));
+  for (std::size_t i = 0; i < cluster.ranks().size(); ++i)
+    ranks.push_back(rank_of(cluster, i, pulse));
   return text_of({{"type", "status"},
                   {"epoch", view.epoch.value},
                   {"spacing", view.level().value_or(kCoarsestLevel).spacing_px()},

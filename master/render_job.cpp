@@ -12,7 +12,8 @@ constexpr std::chrono::milliseconds kPollTime{20};
 
 void check_interrupted(const RenderRequest& request) {
   if (!request.interrupted()) return;
-  throw FatalError({"render", "was interrupted", "nothing was written", ExitStatus::kClusterFailed});
+  throw FatalError(
+      {"render", "was interrupted", "nothing was written", ExitStatus::kClusterFailed});
 }
 
 void cast_view(Cluster& cluster, const RenderRequest& request) {
@@ -22,7 +23,10 @@ void cast_view(Cluster& cluster, const RenderRequest& request) {
   };
   // The last samples may be composed before the master hears what they cost.
   while (!(view.finished() && cluster.progress() == 1) && !time_is_up()) {
-    cluster.poll(kPollTime);
+    const auto event = cluster.poll(kPollTime);
+    if (event && std::holds_alternative<WorkerLost>(*event)) {
+      request.worker_lost(std::get<WorkerLost>(*event).rank);
+    }
     request.progress(cluster.progress());
     check_interrupted(request);
   }
@@ -42,7 +46,8 @@ void collect(Cluster& cluster, const RenderRequest& request, RenderedFrame& fram
     if (band == nullptr) continue;
     --open;
     const std::size_t first = 4 * width * static_cast<std::size_t>(band->rect.y);
-    const std::size_t bytes = 4 * sizeof(float) * width * static_cast<std::size_t>(band->rect.height);
+    const std::size_t bytes =
+        4 * sizeof(float) * width * static_cast<std::size_t>(band->rect.height);
     if (band->rect.y < 0 || band->rect.height < 0 || band->pixels.size() != bytes ||
         sizeof(float) * first + bytes > sizeof(float) * frame.rgba.size()) {
       throw FatalError({"a compositor", "sent a band that does not fit the picture",

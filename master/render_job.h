@@ -15,6 +15,7 @@ struct RenderRequest {
   /// Stop after this long with the finest level that is complete by then, but at least the first.
   std::optional<std::chrono::duration<double>> time;
   std::function<void(double fraction)> progress = [](double) {};
+  std::function<void(Rank rank)> worker_lost = [](Rank) {};
   /// Asked now and then; true ends the job with a FatalError.
   std::function<bool()> interrupted = [] { return false; };
 };

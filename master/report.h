@@ -12,8 +12,8 @@ namespace goldthread {
 /// The estimated RMS error of a view, in 1/255 of full scale.
 double estimated_error(const ViewState& view);
 
-/// frames, features, kernel, ranks, tiles (of the last frame), bytes by kind of message (of the whole
-/// cluster), loadSeconds, version.
+/// frames, features, kernel, ranks, tiles (of the last frame), bytes by kind of message (of the
+/// whole cluster), loadSeconds, version.
 std::string report_json(const Cluster& cluster, const std::vector<ViewState>& frames,
                         double load_seconds);
 

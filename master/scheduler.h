@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// Who casts which tile next. Tiles of a level are handed out first come, first served, in descending
-// order of their predicted cost (longest first), then those of the next level; each worker holds a
-// spare one. Pure: no clock, no transport. Invariant: of a view, each (tile, level) is given out once,
-// or again only when its worker was lost, and is counted as done once.
+// Who casts which tile next. Tiles of a level are handed out first come, first served, in
+// descending order of their predicted cost (longest first), then those of the next level; each
+// worker holds a spare one. Pure: no clock, no transport. Invariant: of a view, each (tile, level)
+// is given out once, or again only when its worker was lost, and is counted as done once.
 
 #include <cstdint>
 #include <optional>
@@ -52,7 +52,7 @@ class Scheduler {
   void append_level(const TileGrid& grid, Level from, Level to, const CostHistory& costs);
 
   std::vector<Worker> workers_;
-  std::vector<Quantum> queue_;   // in order; those before next_ are given out
+  std::vector<Quantum> queue_;  // in order; those before next_ are given out
   std::size_t next_ = 0;
   std::vector<Quantum> returned_;  // of lost workers, to be given out first
   std::size_t open_ = 0;

@@ -68,6 +68,8 @@ void ServeJob::load() {
 
 void ServeJob::on(const LevelReady&) { frame_.better_ready = true; }
 
+void ServeJob::on(const WorkerLost& event) { request_.worker_lost(event.rank); }
+
 void ServeJob::on(const BandPicture&) {}
 
 void ServeJob::on(const GatewayOpened& event) {
@@ -83,7 +85,8 @@ void ServeJob::note_input(std::uint32_t viewer, std::uint32_t serial, bool scene
 }
 
 void ServeJob::on(const ViewerCamera& event) {
-  if (camera_fault(event.camera).any()) return;  // a page that drives itself into a corner stays there
+  if (camera_fault(event.camera).any())
+    return;  // a page that drives itself into a corner stays there
   scene_.camera = event.camera;
   note_input(event.viewer, event.serial, false);
 }
@@ -118,11 +121,17 @@ FrameState ServeJob::frame_state() const {
 
 void ServeJob::act() {
   switch (decide(frame_state())) {
-    case FrameAction::kRefine: return;
-    case FrameAction::kShow: return show(false);
-    case FrameAction::kShowFinal: return show(true);
-    case FrameAction::kShowAndSwitch: show(false); return begin_view();
-    case FrameAction::kSwitch: return begin_view();
+    case FrameAction::kRefine:
+      return;
+    case FrameAction::kShow:
+      return show(false);
+    case FrameAction::kShowFinal:
+      return show(true);
+    case FrameAction::kShowAndSwitch:
+      show(false);
+      return begin_view();
+    case FrameAction::kSwitch:
+      return begin_view();
   }
 }
 
@@ -156,7 +165,8 @@ void ServeJob::tell_status() {
   const auto passed = since(last_status_);
   if (passed < kStatusInterval || settled_) return;
   last_status_ = Clock::now();
-  while (!shown_at_.empty() && Clock::now() - shown_at_.front() > kRateWindow) shown_at_.pop_front();
+  while (!shown_at_.empty() && Clock::now() - shown_at_.front() > kRateWindow)
+    shown_at_.pop_front();
   pulse_.frames_per_second = static_cast<double>(shown_at_.size());
   pulse_.seconds = 1e-6 * static_cast<double>(passed.count());
   to_pages(Broadcast{status_message(cluster_, pulse_)});

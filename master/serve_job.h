@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// An interactive session: input of the driving page in, views to the cluster, pictures to the pages.
-// Decisions are made in frame_policy.h; this is their shell.
+// An interactive session: input of the driving page in, views to the cluster, pictures to the
+// pages. Decisions are made in frame_policy.h; this is their shell.
 
 #include <deque>
 #include <functional>
@@ -25,6 +25,7 @@ struct ServeRequest {
   std::function<void(std::uint16_t port)> opened = [](std::uint16_t) {};
   std::function<void(double fraction)> progress = [](double) {};
   std::function<void(const VolumeInfo&)> loaded = [](const VolumeInfo&) {};
+  std::function<void(Rank rank)> worker_lost = [](Rank) {};
   std::function<bool()> ended = [] { return false; };
 };
 
@@ -46,6 +47,7 @@ class ServeJob {
   void open_gateway();
   void load();
   void on(const LevelReady& event);
+  void on(const WorkerLost& event);
   void on(const BandPicture& event);
   void on(const GatewayOpened& event);
   void on(const ViewerCamera& event);

@@ -8,7 +8,8 @@
 namespace goldthread {
 namespace {
 
-/// Rays between two looks at whether the work is still wanted: some ten packets, under a millisecond.
+/// Rays between two looks at whether the work is still wanted: some ten packets, under a
+/// millisecond.
 constexpr std::size_t kBatch = 256;
 
 }  // namespace
@@ -29,8 +30,8 @@ std::optional<CastQuantum> cast_quantum(const SampleSource& source, const TileGr
   for (std::size_t first = 0; first < positions.size(); first += kBatch) {
     if (stale()) return {};
     const std::size_t count = std::min(kBatch, positions.size() - first);
-    result.counts += source.cast(std::span(positions).subspan(first, count),
-                                 samples.subspan(first, count));
+    result.counts +=
+        source.cast(std::span(positions).subspan(first, count), samples.subspan(first, count));
   }
   return result;
 }

@@ -12,7 +12,7 @@
 namespace goldthread {
 
 struct CastQuantum {
-  Samples samples;   ///< ready to be sent
+  Samples samples;  ///< ready to be sent
   CastCounts counts;
 };
 

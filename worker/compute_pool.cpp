@@ -84,10 +84,10 @@ void ComputePool::cast(const CastView& view, const RenderTile& quantum,
   {
     const std::lock_guard lock(mutex_);
     if (quantum.epoch != view_->epoch) return;
-    outbox_.push_back({std::move(result->samples),
-                       {quantum.epoch, quantum.tile, quantum.to,
-                        static_cast<std::uint32_t>(cost_us), result->counts.rays,
-                        result->counts.samples}});
+    outbox_.push_back(
+        {std::move(result->samples),
+         {quantum.epoch, quantum.tile, quantum.to, static_cast<std::uint32_t>(cost_us),
+          result->counts.rays, result->counts.samples}});
   }
   notify_();
 }

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// The compute threads of a worker: they take quanta in order, cast them, and leave what is done in an
-// outbox for the thread that owns the transport. A newer epoch empties the queue and makes running
-// quanta stop at their next batch.
+// The compute threads of a worker: they take quanta in order, cast them, and leave what is done in
+// an outbox for the thread that owns the transport. A newer epoch empties the queue and makes
+// running quanta stop at their next batch.
 
 #include <atomic>
 #include <chrono>

@@ -15,34 +15,37 @@ namespace goldthread {
 namespace {
 
 constexpr std::chrono::milliseconds kIdleWait{50};
+constexpr std::chrono::seconds kFarewell{2};
 constexpr std::chrono::milliseconds kLoadingWait{20};
 
 }  // namespace
 
 WorkerRole::WorkerRole(Transport& transport) : post_(transport) {}
 
-void WorkerRole::run() {
-  post_.to_master(Hello{kProtocolVersion, GOLDTHREAD_VERSION, Role::kWorker, host_name(), node_key(),
-                        usable_cores()});
-  while (!stopped_) {
+bool WorkerRole::run() {
+  post_.to_master(Hello{kProtocolVersion, GOLDTHREAD_VERSION, Role::kWorker, host_name(),
+                        node_key(), usable_cores()});
+  while (!stop_) {
     try {
       while (auto message = post_.receive<ToWorker>()) {
         std::visit([&](auto& value) { on(std::move(value)); }, message->second);
       }
       finish_loading();
       send_done();
+      heartbeat_.beat(post_);
     } catch (const FatalError& error) {
       post_.to_master(RankFailed{error.failure()});
     }
-    if (!stopped_) post_.wait(loading_ ? kLoadingWait : kIdleWait);
+    if (!stop_) post_.wait(loading_ ? kLoadingWait : kIdleWait);
   }
-  post_.flush(std::chrono::seconds(2));
+  post_.flush(kFarewell);
+  return !stop_->ranks_lost;
 }
 
 void WorkerRole::on(BeginSession message) {
   session_ = message;
-  pool_ = std::make_unique<ComputePool>(message.threads, message.interactive,
-                                        [this] { post_.wake(); });
+  pool_ =
+      std::make_unique<ComputePool>(message.threads, message.interactive, [this] { post_.wake(); });
 }
 
 void WorkerRole::on(const LoadVolume& message) {
@@ -50,9 +53,7 @@ void WorkerRole::on(const LoadVolume& message) {
   loading_ = std::async(std::launch::async, [this, message]() -> Result<LoadedBlock> {
     LoadOptions options;
     if (message.component >= 0) options.component = message.component;
-    options.progress = [this](double fraction) {
-      load_fraction_ = static_cast<float>(fraction);
-    };
+    options.progress = [this](double fraction) { load_fraction_ = static_cast<float>(fraction); };
     try {
       auto loaded = goldthread::load_volume(message.file, options);
       if (!loaded) return loaded.failure();
@@ -100,13 +101,12 @@ void WorkerRole::on(const CommitScene& message) {
 
 void WorkerRole::on(const BeginView& message) {
   if (!message.grid.valid() || message.scene_revision != revision_) {
-    throw FatalError({"rank " + std::to_string(post_.rank().value), "was given a view it cannot cast",
-                      "", ExitStatus::kClusterFailed});
+    throw FatalError({"rank " + std::to_string(post_.rank().value),
+                      "was given a view it cannot cast", "", ExitStatus::kClusterFailed});
   }
   view_ = message;
-  pool_->begin_view(std::make_shared<const CastView>(
-      CastView{message.epoch, message.grid,
-               make_ray_caster(scene_, message.camera, message.grid.image)}));
+  pool_->begin_view(std::make_shared<const CastView>(CastView{
+      message.epoch, message.grid, make_ray_caster(scene_, message.camera, message.grid.image)}));
 }
 
 void WorkerRole::on(const RenderTile& message) {
@@ -118,7 +118,8 @@ void WorkerRole::on(const RenderTile& message) {
 void WorkerRole::send_done() {
   if (!pool_) return;
   for (ComputePool::Done& done : pool_->take_done()) {
-    const int band = band_index(view_->grid, done.samples.tile, static_cast<int>(session_.compositors));
+    const int band =
+        band_index(view_->grid, done.samples.tile, static_cast<int>(session_.compositors));
     const Topology topology{static_cast<int>(session_.compositors), 1};
     post_.to_compositor(topology.compositor(band), std::move(done.samples));
     post_.to_master(done.report);
@@ -129,6 +130,6 @@ void WorkerRole::on(const ReportCounters&) {
   post_.to_master(Counters{post_.sent(), pool_ ? pool_->busy().count() : 0});
 }
 
-void WorkerRole::on(const Stop&) { stopped_ = true; }
+void WorkerRole::on(const Stop& message) { stop_ = message; }
 
 }  // namespace goldthread

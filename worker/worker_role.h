@@ -1,12 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 // A worker rank: holds the volume and the scene, casts the tiles it is given, sends the samples to
-// the compositor of their band and the cost to the master. Knows neither who asked nor who displays.
+// the compositor of their band and the cost to the master. Knows neither who asked nor who
+// displays.
 
 #include <future>
 #include <memory>
 #include <optional>
 
+#include "common/transport/heartbeat.h"
 #include "common/transport/post.h"
 #include "worker/compute_pool.h"
 #include "worker/ray_caster.h"
@@ -16,8 +18,9 @@ namespace goldthread {
 class WorkerRole {
  public:
   explicit WorkerRole(Transport& transport);
-  /// Serves until the master says stop. What fails is told to the master, which ends the job.
-  void run();
+  /// Serves until the master says stop. What fails is told to the master, which ends the job. True
+  /// if no rank was lost meanwhile.
+  bool run();
 
  private:
   void on(BeginSession message);
@@ -38,7 +41,8 @@ class WorkerRole {
   };
 
   Post post_;
-  bool stopped_ = false;
+  HeartbeatSender heartbeat_;
+  std::optional<Stop> stop_;
   BeginSession session_;
   std::atomic<float> load_fraction_{0};
   float told_fraction_ = 0;

@@ -8,7 +8,8 @@
 
 namespace goldthread {
 
-/// Names a view (camera + scene revision). Grows by one with each new view; never wraps in practice.
+/// Names a view (camera + scene revision). Grows by one with each new view; never wraps in
+/// practice.
 struct Epoch {
   std::uint32_t value = 0;
   auto operator<=>(const Epoch&) const = default;
@@ -16,7 +17,8 @@ struct Epoch {
   static constexpr auto fields() { return std::tuple{&Epoch::value}; }
 };
 
-/// A process (MPI) or thread (loopback) of the cluster: 0 is the master, then compositors, then workers.
+/// A process (MPI) or thread (loopback) of the cluster: 0 is the master, then compositors, then
+/// workers.
 struct Rank {
   std::int32_t value = 0;
   auto operator<=>(const Rank&) const = default;

@@ -8,19 +8,31 @@
 #include <memory>
 #include <new>
 #include <span>
+#include <utility>
 
 namespace goldthread {
 
 class Buffer {
  public:
-  static constexpr std::size_t kHeadroom = 128;   ///< bytes kept free in front of a new buffer
-  static constexpr std::size_t kAlignment = 64;   ///< of the memory, not of the window
+  static constexpr std::size_t kHeadroom = 128;  ///< bytes kept free in front of a new buffer
+  static constexpr std::size_t kAlignment = 64;  ///< of the memory, not of the window
 
   Buffer() = default;
   /// `size` bytes that are not initialised.
   explicit Buffer(std::size_t size) : Buffer(size, kHeadroom) {}
   /// For receiving: no headroom, so that what was aligned to 16 within the message stays so.
   static Buffer for_receiving(std::size_t size) { return Buffer(size, 0); }
+  /// What was moved from is empty.
+  Buffer(Buffer&& other) noexcept
+      : memory_(std::move(other.memory_)),
+        begin_(std::exchange(other.begin_, 0)),
+        size_(std::exchange(other.size_, 0)) {}
+  Buffer& operator=(Buffer&& other) noexcept {
+    memory_ = std::move(other.memory_);
+    begin_ = std::exchange(other.begin_, 0);
+    size_ = std::exchange(other.size_, 0);
+    return *this;
+  }
 
   std::byte* data() { return memory_.get() + begin_; }
   const std::byte* data() const { return memory_.get() + begin_; }

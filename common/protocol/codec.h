@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// Values to bytes and back, derived from each struct's list of fields(). Fixed-width scalars, little
-// endian, no padding. Reading never trusts: counts are checked against the bytes that are left,
-// enumerators and booleans against their range, and short or trailing bytes are refused.
+// Values to bytes and back, derived from each struct's list of fields(). Fixed-width scalars,
+// little endian, no padding. Reading never trusts: counts are checked against the bytes that are
+// left, enumerators and booleans against their range, and short or trailing bytes are refused.
 
+#include <algorithm>
+#include <array>
 #include <bit>
 #include <concepts>
 #include <cstdint>
@@ -22,26 +24,24 @@ namespace goldthread {
 
 static_assert(std::endian::native == std::endian::little, "the wire is little endian");
 
-/// The last enumerator of an enum that travels; specialised beside the messages.
+/// The `values` that an enum may have on the wire; specialised beside the messages.
 template <class Enum>
-struct LastEnumerator;
+struct Enumerators;
 
 /// A struct with a static list of pointers to its members.
 template <class T>
-concept HasFields = requires { T::fields(); };
+concept HasFields = requires {
+  T::fields();
+};
 
 class ByteWriter {
  public:
   template <class T>
-    requires std::is_arithmetic_v<T>
-  void write(const T& value) {
-    append(&value, sizeof(T));
-  }
+  requires std::is_arithmetic_v<T>
+  void write(const T& value) { append(&value, sizeof(T)); }
   template <class T>
-    requires std::is_enum_v<T>
-  void write(const T& value) {
-    write(static_cast<std::underlying_type_t<T>>(value));
-  }
+  requires std::is_enum_v<T>
+  void write(const T& value) { write(static_cast<std::underlying_type_t<T>>(value)); }
   void write(const std::string& text) {
     write(static_cast<std::uint32_t>(text.size()));
     append(text.data(), text.size());
@@ -89,7 +89,7 @@ class ByteReader {
 
   /// Each read tells whether the bytes were good; after a bad one the value is unspecified.
   template <class T>
-    requires std::is_arithmetic_v<T>
+  requires std::is_arithmetic_v<T>
   bool read(T& value) {
     if (left() < sizeof(T)) return false;
     if constexpr (std::same_as<T, bool>) {
@@ -103,13 +103,13 @@ class ByteReader {
     return true;
   }
   template <class T>
-    requires std::is_enum_v<T>
+  requires std::is_enum_v<T>
   bool read(T& value) {
     std::underlying_type_t<T> number{};
     if (!read(number)) return false;
-    if (number < 0 || number > static_cast<decltype(number)>(LastEnumerator<T>::value)) return false;
     value = static_cast<T>(number);
-    return true;
+    const auto& known = Enumerators<T>::values;
+    return std::find(known.begin(), known.end(), value) != known.end();
   }
   bool read(std::string& text) {
     std::uint32_t size = 0;

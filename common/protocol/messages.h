@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 // The whole contract between roles: who may say what to whom. Each message is a value with one list
-// of its fields, from which encode and decode are derived (wire.h). One variant per direction; roles
-// visit it without a default branch, so that a new message breaks the build until it is handled.
-// Messages of work carry the epoch of their view; whoever sees a stale one drops it.
+// of its fields, from which encode and decode are derived (wire.h). One variant per direction;
+// roles visit it without a default branch, so that a new message breaks the build until it is
+// handled. Messages of work carry the epoch of their view; whoever sees a stale one drops it.
 
+#include <array>
 #include <cstdint>
 #include <string>
 #include <tuple>
@@ -25,19 +26,33 @@ constexpr std::uint32_t kProtocolVersion = 1;
 
 enum class Role : std::uint8_t { kMaster, kCompositor, kWorker };
 
-template <> struct LastEnumerator<Role> { static constexpr auto value = Role::kWorker; };
-template <> struct LastEnumerator<VoxelType> { static constexpr auto value = VoxelType::kFloat32; };
-template <> struct LastEnumerator<ColorSpace> { static constexpr auto value = ColorSpace::kLinear; };
-template <> struct LastEnumerator<ExitStatus> {
-  static constexpr auto value = ExitStatus::kClusterFailed;
+template <>
+struct Enumerators<Role> {
+  static constexpr std::array values{Role::kMaster, Role::kCompositor, Role::kWorker};
+};
+template <>
+struct Enumerators<VoxelType> {
+  static constexpr std::array values{VoxelType::kUInt8, VoxelType::kInt8, VoxelType::kUInt16,
+                                     VoxelType::kInt16, VoxelType::kFloat32};
+};
+template <>
+struct Enumerators<ColorSpace> {
+  static constexpr std::array values{ColorSpace::kDisplay, ColorSpace::kLinear};
+};
+/// Of a failure; kDone is none.
+template <>
+struct Enumerators<ExitStatus> {
+  static constexpr std::array values{ExitStatus::kUsage, ExitStatus::kBadInput,
+                                     ExitStatus::kClusterFailed};
 };
 
 /// Declares a message's name and fields; both are part of the wire format's documentation.
-#define GOLDTHREAD_MESSAGE(Type, ...)            \
-  static constexpr const char* kName = #Type;    \
+#define GOLDTHREAD_MESSAGE(Type, ...)         \
+  static constexpr const char* kName = #Type; \
   static constexpr auto fields() { return std::tuple{__VA_ARGS__}; }
 
-// ---- any rank to the master -----------------------------------------------------------------------
+// ---- any rank to the master
+// -----------------------------------------------------------------------
 
 /// The first message of every rank. A protocol or build that differs ends the job, naming both.
 struct Hello {
@@ -61,6 +76,11 @@ struct SharedBlock {
   }
 };
 
+/// A rank lives; sent about once a second.
+struct Heartbeat {
+  std::uint8_t unused = 0;
+  GOLDTHREAD_MESSAGE(Heartbeat, &Heartbeat::unused)
+};
 /// A worker is reading the volume: `fraction` of it is done, 0 … 1.
 struct LoadProgress {
   float fraction = 0;
@@ -93,8 +113,8 @@ struct TileDone {
   std::uint32_t cost_us = 0;  ///< time that a thread spent on it
   std::uint64_t rays = 0;
   std::uint64_t samples = 0;
-  GOLDTHREAD_MESSAGE(TileDone, &TileDone::epoch, &TileDone::tile, &TileDone::to,
-                     &TileDone::cost_us, &TileDone::rays, &TileDone::samples)
+  GOLDTHREAD_MESSAGE(TileDone, &TileDone::epoch, &TileDone::tile, &TileDone::to, &TileDone::cost_us,
+                     &TileDone::rays, &TileDone::samples)
 };
 /// Each tile of a compositor's band is at `level` or finer. `squared_error` is the estimated mean
 /// square error of the band at that level, per pixel and colour channel.
@@ -163,16 +183,17 @@ struct Audience {
 };
 
 using ToMaster =
-    std::variant<Hello, LoadProgress, VolumeLoaded, VolumeMapped, SceneCommitted, TileDone, BandReady,
-                 BandPicture, Counters, RankFailed, GatewayOpened, ViewerCamera, ViewerEdit,
-                 ViewerSize, Audience>;
+    std::variant<Hello, Heartbeat, LoadProgress, VolumeLoaded, VolumeMapped, SceneCommitted,
+                 TileDone, BandReady, BandPicture, Counters, RankFailed, GatewayOpened,
+                 ViewerCamera, ViewerEdit, ViewerSize, Audience>;
 
-// ---- the master to a worker, or to a compositor ---------------------------------------------------
+// ---- the master to a worker, or to a compositor
+// ---------------------------------------------------
 
 /// How the session computes; sent before anything else.
 struct BeginSession {
-  std::uint32_t threads = 1;   ///< compute threads of this rank
-  bool interactive = false;    ///< compute only when nothing else wants the core
+  std::uint32_t threads = 1;  ///< compute threads of this rank
+  bool interactive = false;   ///< compute only when nothing else wants the core
   std::uint32_t compositors = 1;
   GOLDTHREAD_MESSAGE(BeginSession, &BeginSession::threads, &BeginSession::interactive,
                      &BeginSession::compositors)
@@ -220,16 +241,17 @@ struct ReportCounters {
   std::uint8_t unused = 0;
   GOLDTHREAD_MESSAGE(ReportCounters, &ReportCounters::unused)
 };
-/// The job is over.
+/// The job is over. If a rank was lost, MPI can no longer be finalized: just go.
 struct Stop {
-  std::uint8_t unused = 0;
-  GOLDTHREAD_MESSAGE(Stop, &Stop::unused)
+  bool ranks_lost = false;
+  GOLDTHREAD_MESSAGE(Stop, &Stop::ranks_lost)
 };
 
-using ToWorker = std::variant<BeginSession, LoadVolume, MapVolume, CommitScene, BeginView, RenderTile,
-                              ReportCounters, Stop>;
+using ToWorker = std::variant<BeginSession, LoadVolume, MapVolume, CommitScene, BeginView,
+                              RenderTile, ReportCounters, Stop>;
 
-// ---- to a compositor ------------------------------------------------------------------------------
+// ---- to a compositor
+// ------------------------------------------------------------------------------
 
 /// A worker's samples of one quantum: float RGBA, in the order of new_samples().
 struct Samples {
@@ -249,8 +271,8 @@ struct Present {
   std::uint32_t serial = 0;
   bool lossless = false;
   bool final = false;
-  GOLDTHREAD_MESSAGE(Present, &Present::epoch, &Present::picture, &Present::viewer, &Present::serial,
-                     &Present::lossless, &Present::final)
+  GOLDTHREAD_MESSAGE(Present, &Present::epoch, &Present::picture, &Present::viewer,
+                     &Present::serial, &Present::lossless, &Present::final)
 };
 /// Send the band's finished pixels to the master.
 struct CollectBand {

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// A message of a direction to bytes and back: one byte for the kind, then its fields. A message whose
-// last field is a Buffer is bulk: its header is padded to 16 bytes and put in front of the buffer, so
-// that the payload is neither copied nor misaligned.
+// A message of a direction to bytes and back: one byte for the kind, then its fields. A message
+// whose last field is a Buffer is bulk: its header is padded to 16 bytes and put in front of the
+// buffer, so that the payload is neither copied nor misaligned.
 
 #include <optional>
 #include <utility>
@@ -30,7 +30,8 @@ bool each_plain_field(Message& message, F f) {
       std::tuple_size_v<decltype(fields)> - (is_bulk<std::remove_const_t<Message>>() ? 1 : 0);
   return [&]<std::size_t... I>(std::index_sequence<I...>) {
     return (f(message.*std::get<I>(fields)) && ...);
-  }(std::make_index_sequence<count>{});
+  }
+  (std::make_index_sequence<count>{});
 }
 
 template <class Message>
@@ -90,7 +91,8 @@ std::optional<Direction> decode(Buffer bytes) {
     ((Kind == kind && (message = wire_detail::decode_kind<Direction, Kind>(reader, bytes), true)) ||
      ...);
     return message;
-  }(std::make_index_sequence<std::variant_size_v<Direction>>{});
+  }
+  (std::make_index_sequence<std::variant_size_v<Direction>>{});
 }
 
 /// The name of a message, for counters and logs.

@@ -11,7 +11,8 @@ struct PixelPosition {
   float y = 0;
 };
 
-/// Premultiplied colour and opacity of one ray, without the background, in the scene's colour space.
+/// Premultiplied colour and opacity of one ray, without the background, in the scene's colour
+/// space.
 struct Sample {
   float red = 0;
   float green = 0;

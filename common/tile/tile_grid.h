@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// How the screen is cut: tiles (sample squares, or sample rows), the levels of samples in a tile, and
-// the compositors' bands. Pure geometry that master, workers and compositors agree on.
+// How the screen is cut: tiles (sample squares, or sample rows), the levels of samples in a tile,
+// and the compositors' bands. Pure geometry that master, workers and compositors agree on.
 
 #include <cstdint>
 #include <vector>
@@ -44,7 +44,8 @@ struct TileGrid {
   std::uint32_t count() const { return static_cast<std::uint32_t>(columns() * rows()); }
   /// The pixels of a tile, clipped to the image.
   PixelRect rect(TileId id) const;
-  /// Whether the sizes are sane: positive, within limits, tiles multiples of 16. For bytes of a peer.
+  /// Whether the sizes are sane: positive, within limits, tiles multiples of 16. For bytes of a
+  /// peer.
   bool valid() const;
 
   static TileGrid squares(ImageSize image, int edge);
@@ -53,14 +54,15 @@ struct TileGrid {
 };
 
 /// The samples that take a tile of `size` pixels from level `from` (kNoLevel: from nothing) to the
-/// finer level `to`, each once, in the one order in which they travel: in blocks of 4×4, for the sake
-/// of coherent packets. Above the pixel level they include the replicated column and row at or beyond
-/// the right and lower edges, so that each tile can be reconstructed alone.
+/// finer level `to`, each once, in the one order in which they travel: in blocks of 4×4, for the
+/// sake of coherent packets. Above the pixel level they include the replicated column and row at or
+/// beyond the right and lower edges, so that each tile can be reconstructed alone.
 std::vector<SampleOffset> new_samples(ImageSize size, Level from, Level to);
 
 /// The centre of the pixel that a sample stands for.
 inline PixelPosition position_of(const PixelRect& tile, SampleOffset offset) {
-  return {static_cast<float>(tile.x + offset.x) + 0.5f, static_cast<float>(tile.y + offset.y) + 0.5f};
+  return {static_cast<float>(tile.x + offset.x) + 0.5f,
+          static_cast<float>(tile.y + offset.y) + 0.5f};
 }
 
 /// The tile rows [first, last) of compositor `index` of `count`, as even as whole rows allow.

@@ -54,7 +54,10 @@ class MpiTransport::Impl {
     receiving_.resize(static_cast<std::size_t>(size_));
     prctl(PR_SET_TIMERSLACK, kTimerSlackNs);
   }
-  ~Impl() { MPI_Finalize(); }
+  ~Impl() {
+    if (!abandoned_) MPI_Finalize();
+  }
+  void abandon() { abandoned_ = true; }
 
   int rank() const { return rank_; }
   int size() const { return size_; }
@@ -100,8 +103,10 @@ class MpiTransport::Impl {
     const bool busy = !sending_.empty() || open_receives_ > 0;
     const auto length = std::min(at_most, busy ? kShortestSleep : sleep_);
     std::unique_lock lock(mutex_);
-    if (woken_changed_.wait_for(lock, length, [&] { return woken_; })) sleep_ = kShortestSleep;
-    else sleep_ = std::min(sleep_ * 5 / 4, kLongestSleep);
+    if (woken_changed_.wait_for(lock, length, [&] { return woken_; }))
+      sleep_ = kShortestSleep;
+    else
+      sleep_ = std::min(sleep_ * 5 / 4, kLongestSleep);
     woken_ = false;
   }
 
@@ -167,6 +172,7 @@ class MpiTransport::Impl {
     return envelope;
   }
 
+  bool abandoned_ = false;
   int rank_ = 0;
   int size_ = 1;
   std::list<Transfer> sending_;
@@ -184,7 +190,8 @@ class MpiTransport::Impl {
 int ranks_of_mpi_job() {
   const char* size = std::getenv("OMPI_COMM_WORLD_SIZE");
   // srun with PMIx sets no size of Open MPI's.
-  if (size == nullptr && std::getenv("PMIX_RANK") != nullptr) size = std::getenv("SLURM_STEP_NUM_TASKS");
+  if (size == nullptr && std::getenv("PMIX_RANK") != nullptr)
+    size = std::getenv("SLURM_STEP_NUM_TASKS");
   return size == nullptr ? 1 : std::max(1, std::atoi(size));
 }
 
@@ -195,6 +202,7 @@ int MpiTransport::size() const { return impl_->size(); }
 void MpiTransport::send(Rank to, Buffer message) { impl_->send(to, std::move(message)); }
 std::optional<Envelope> MpiTransport::receive() { return impl_->receive(); }
 void MpiTransport::wait(std::chrono::microseconds at_most) { impl_->wait(at_most); }
+void MpiTransport::abandon() { impl_->abandon(); }
 void MpiTransport::wake() { impl_->wake(); }
 void MpiTransport::flush(std::chrono::milliseconds at_most) { impl_->flush(at_most); }
 

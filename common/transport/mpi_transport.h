@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// The cluster over MPI. The only source that includes mpi.h is this header's .cpp. A rank polls with
-// a back-off instead of blocking, because a blocked receive of Open MPI spins and takes the core from
-// the ranks that compute.
+// The cluster over MPI. The only source that includes mpi.h is this header's .cpp. A rank polls
+// with a back-off instead of blocking, because a blocked receive of Open MPI spins and takes the
+// core from the ranks that compute.
 
 #include <memory>
 
@@ -10,8 +10,8 @@
 
 namespace goldthread {
 
-/// How many ranks the MPI job has that this process was started in, from the environment that mpirun
-/// and srun set; 1 if it was started alone.
+/// How many ranks the MPI job has that this process was started in, from the environment that
+/// mpirun and srun set; 1 if it was started alone.
 int ranks_of_mpi_job();
 
 /// Owns MPI from construction to destruction; make one per process, use it from one thread.
@@ -28,6 +28,9 @@ class MpiTransport final : public Transport {
   void wait(std::chrono::microseconds at_most) override;
   void wake() override;
   void flush(std::chrono::milliseconds at_most) override;
+  /// A rank was lost: MPI_Finalize, which is collective, would wait for it for ever. The process
+  /// must then end by _exit, because Open MPI's own exit handlers would wait too.
+  void abandon();
 
  private:
   class Impl;

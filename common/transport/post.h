@@ -30,11 +30,11 @@ class Post {
     if (!envelope) return {};
     auto message = decode<Inbox>(std::move(envelope->message));
     if (!message) {
-      throw FatalError({.where = "rank " + std::to_string(envelope->from.value),
-                        .what = "sent bytes that are no message of protocol " +
-                                std::to_string(kProtocolVersion),
-                        .mend = "start the same build of goldthread on every host",
-                        .status = ExitStatus::kClusterFailed});
+      throw FatalError(
+          {.where = "rank " + std::to_string(envelope->from.value),
+           .what = "sent bytes that are no message of protocol " + std::to_string(kProtocolVersion),
+           .mend = "start the same build of goldthread on every host",
+           .status = ExitStatus::kClusterFailed});
     }
     return std::pair{envelope->from, std::move(*message)};
   }

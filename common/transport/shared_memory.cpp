@@ -56,8 +56,8 @@ OwnedBlock make_shared_block(std::size_t bytes) {
   if (descriptor->number() < 0) fail("memfd_create", errno, "");
   // Pages are taken now, so that a lack of memory is an error here and no signal later.
   if (const int error = posix_fallocate(descriptor->number(), 0, static_cast<off_t>(bytes))) {
-    fail("posix_fallocate", error, "free memory on this host: the volume needs " +
-                                       std::to_string(bytes >> 20) + " MiB");
+    fail("posix_fallocate", error,
+         "free memory on this host: the volume needs " + std::to_string(bytes >> 20) + " MiB");
   }
   OwnedBlock block;
   block.share = {static_cast<std::int32_t>(getpid()), descriptor->number(), bytes};

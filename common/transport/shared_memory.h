@@ -21,7 +21,8 @@ struct OwnedBlock {
 /// `bytes` zeros, aligned to a page. Throws FatalError if there is not enough memory.
 OwnedBlock make_shared_block(std::size_t bytes);
 
-/// A neighbour's block, read-only. Throws FatalError if it cannot be mapped or is not as long as told.
+/// A neighbour's block, read-only. Throws FatalError if it cannot be mapped or is not as long as
+/// told.
 std::shared_ptr<const std::byte> map_shared_block(const SharedBlock& block);
 
 /// Equal for two processes exactly if one can map the other's blocks: host name, boot and process

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// How ranks reach each other: messages as bytes, in order between any two ranks, never blocking on a
-// peer. One thread of a rank owns its transport; only wake() may be called from others.
+// How ranks reach each other: messages as bytes, in order between any two ranks, never blocking on
+// a peer. One thread of a rank owns its transport; only wake() may be called from others.
 
 #include <chrono>
 #include <optional>

@@ -1,10 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 // One rank of a cluster, or all of them in threads.
 
+#include <unistd.h>
+
 #include <csignal>
+#include <cstdio>
 #include <exception>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <thread>
 #include <vector>
 
@@ -29,24 +33,39 @@ void catch_signals() {
   sigaction(SIGTERM, &action, nullptr);
 }
 
-void run_master(Transport& transport, Topology topology, const Options& options) {
+/// How a rank's role ended.
+struct RoleEnd {
+  std::optional<Failure> failure;  ///< of the job; the master tells it
+  bool all_ranks_there = true;
+};
+
+/// Whatever happens, the other ranks are told to stop.
+RoleEnd run_master(Transport& transport, Topology topology, const Options& options) {
   const bool serve = options.command == Command::kServe;
   Cluster cluster(transport, topology, {options.threads.value_or(0), serve});
-  // Whatever happens, the other ranks are told to stop.
-  struct StopAtEnd {
-    Cluster& cluster;
-    ~StopAtEnd() { cluster.stop(); }
-  } stop_at_end{cluster};
-  cluster.greet();
-  serve ? run_serve(cluster, options) : run_render(cluster, options);
+  RoleEnd end;
+  try {
+    cluster.greet();
+    serve ? run_serve(cluster, options) : run_render(cluster, options);
+  } catch (const FatalError& error) {
+    end.failure = error.failure();
+  } catch (const std::exception& error) {
+    end.failure = {"goldthread", error.what(), "please report this", ExitStatus::kClusterFailed};
+  }
+  end.all_ranks_there = cluster.stop();
+  return end;
 }
 
-void run_role(Transport& transport, Topology topology, const Options& options) {
+RoleEnd run_role(Transport& transport, Topology topology, const Options& options) {
   switch (topology.role_of(transport.rank())) {
-    case Role::kMaster: return run_master(transport, topology, options);
-    case Role::kCompositor: return CompositorRole(transport).run();
-    case Role::kWorker: return WorkerRole(transport).run();
+    case Role::kMaster:
+      return run_master(transport, topology, options);
+    case Role::kCompositor:
+      return {{}, CompositorRole(transport).run()};
+    case Role::kWorker:
+      return {{}, WorkerRole(transport).run()};
   }
+  return {};
 }
 
 int run_in_threads(const Options& options) {
@@ -56,9 +75,11 @@ int run_in_threads(const Options& options) {
   for (int i = 0; i < topology.size(); ++i) transports.push_back(network.connect({i}));
   std::vector<std::jthread> ranks;
   for (int i = 1; i < topology.size(); ++i) {
-    ranks.emplace_back([&, i] { run_role(*transports[static_cast<std::size_t>(i)], topology, options); });
+    ranks.emplace_back(
+        [&, i] { run_role(*transports[static_cast<std::size_t>(i)], topology, options); });
   }
-  run_role(*transports[0], topology, options);
+  const RoleEnd end = run_role(*transports[0], topology, options);
+  if (end.failure) throw FatalError(*end.failure);
   return 0;
 }
 
@@ -71,12 +92,20 @@ int run_mpi_rank(const Options& options) {
     return static_cast<int>(topology.failure().status);
   }
   if (options.workers && *options.workers != topology->workers) {
-    const Failure failure{"--workers", "is for a single process: mpirun says how many ranks there are",
+    const Failure failure{"--workers",
+                          "is for a single process: mpirun says how many ranks there are",
                           "leave it out under mpirun", ExitStatus::kUsage};
     if (master) throw FatalError(failure);
     return static_cast<int>(failure.status);
   }
-  run_role(transport, *topology, options);
+  const RoleEnd end = run_role(transport, *topology, options);
+  if (!end.all_ranks_there) {
+    if (end.failure) std::fprintf(stderr, "%s\n", end.failure->line().c_str());
+    std::fflush(nullptr);
+    transport.abandon();
+    _exit(end.failure ? static_cast<int>(end.failure->status) : 0);
+  }
+  if (end.failure) throw FatalError(*end.failure);
   return 0;
 }
 

@@ -47,9 +47,11 @@ void set_up_log(LogLevel level) {
 int run(const Options& options) {
   set_up_log(options.log_level);
   switch (options.command) {
-    case Command::kInfo: return run_info(options);
+    case Command::kInfo:
+      return run_info(options);
     case Command::kRender:
-    case Command::kServe: return run_cluster(options);
+    case Command::kServe:
+      return run_cluster(options);
   }
   return static_cast<int>(ExitStatus::kUsage);
 }
@@ -68,6 +70,7 @@ int main(int argc, char** argv) {
   } catch (const FatalError& error) {
     return fail(error.failure(), true);
   } catch (const std::exception& error) {
-    return fail({"goldthread", error.what(), "please report this", ExitStatus::kClusterFailed}, true);
+    return fail({"goldthread", error.what(), "please report this", ExitStatus::kClusterFailed},
+                true);
   }
 }

@@ -6,8 +6,8 @@
 
 namespace goldthread {
 
-/// Runs `render` or `serve`: as one rank of an MPI job, or, without mpirun, as all ranks in threads.
-/// Returns the exit status of this process; throws FatalError.
+/// Runs `render` or `serve`: as one rank of an MPI job, or, without mpirun, as all ranks in
+/// threads. Returns the exit status of this process; throws FatalError.
 int run_cluster(const Options& options);
 
 /// Runs `info`.

@@ -27,8 +27,10 @@ namespace {
 class Output {
  public:
   explicit Output(const Options& options) {
-    if (options.orbit) pattern_ = value_or_throw(SequencePath::parse(options.output));
-    else single_ = options.output;
+    if (options.orbit)
+      pattern_ = value_or_throw(SequencePath::parse(options.output));
+    else
+      single_ = options.output;
     value_or_throw(image_path(path(0).string()));
   }
   std::filesystem::path path(int frame) const { return pattern_ ? pattern_->at(frame) : single_; }
@@ -38,7 +40,8 @@ class Output {
   std::string single_;
 };
 
-void write_frame(const std::filesystem::path& path, const Scene& scene, const RenderedFrame& frame) {
+void write_frame(const std::filesystem::path& path, const Scene& scene,
+                 const RenderedFrame& frame) {
   const ImageMetadata metadata{{kSceneKey, scene_to_json(scene)},
                                {kCameraKey, camera_to_json(*scene.camera)},
                                {kSoftwareKey, std::string("goldthread ") + GOLDTHREAD_VERSION}};
@@ -87,6 +90,7 @@ void run_render(Cluster& cluster, const Options& options) {
   request.grid = grid_of(options, scene.image.size);
   if (options.time_s) request.time = std::chrono::duration<double>(*options.time_s);
   request.interrupted = interrupted;
+  request.worker_lost = log_lost_worker;
   const Orbit orbit = options.orbit.value_or(Orbit{1, 0});
   const Camera first = *scene.camera;
   std::vector<ViewState> views;

@@ -26,4 +26,8 @@ void log_volume(const VolumeInfo& info) {
   for (const std::string& note : info.notes) spdlog::warn("{}: {}", info.file, note);
 }
 
+void log_lost_worker(Rank rank) {
+  spdlog::warn("rank {}, a worker, has gone silent; the others go on with its tiles", rank.value);
+}
+
 }  // namespace goldthread

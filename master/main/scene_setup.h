@@ -12,7 +12,8 @@ namespace goldthread {
 /// The scene of the command line, the options that overrule it applied. Throws FatalError.
 Scene scene_of(const Options& options);
 TileGrid grid_of(const Options& options, ImageSize image);
-/// What the user should know of a volume, one line each.
+/// What the user should know, one line each, to the log.
 void log_volume(const VolumeInfo& info);
+void log_lost_worker(Rank rank);
 
 }  // namespace goldthread

@@ -44,6 +44,7 @@ void run_serve(Cluster& cluster, const Options& options) {
   request.grid = [&](ImageSize size) { return grid_of(options, size); };
   request.resolve = resolve_scene;
   request.ended = interrupted;
+  request.worker_lost = log_lost_worker;
   request.opened = [&](std::uint16_t port) {
     const AddressHint hint = address_hint(options.host, port, token, host_name());
     std::printf("%s\n", hint.url.c_str());
