@@ -6,8 +6,10 @@
 #include <gdcmTrace.h>
 
 #include <algorithm>
+#include <array>
 #include <charconv>
 #include <cmath>
+#include <cstring>
 #include <fstream>
 #include <map>
 #include <optional>
@@ -191,9 +193,19 @@ std::vector<Slice> read_folder(const fs::path& folder) {
 }  // namespace
 
 bool is_dicom_file(const fs::path& file) {
-  char start[132] = {};
+  // Preamble, "DICM", then (0002,0000): the length of the file's meta information behind it. GDCM
+  // as Debian builds it aborts on a file that ends inside, so that such a file is none here.
+  constexpr std::size_t kStart = 144;
+  std::array<char, kStart> start{};
   std::ifstream stream(file, std::ios::binary);
-  return stream.read(start, sizeof start) && std::string_view(start + 128, 4) == "DICM";
+  if (!stream.read(start.data(), kStart) || std::string_view(start.data() + 128, 4) != "DICM")
+    return false;
+  std::uint32_t meta = 0;
+  std::memcpy(&meta, start.data() + 140, sizeof meta);
+  const bool has_length =
+      std::string_view(start.data() + 132, 8) == std::string_view("\2\0\0\0UL\4\0", 8);
+  std::error_code error;
+  return !has_length || fs::file_size(file, error) > kStart + std::uint64_t(meta) + 8;
 }
 
 Result<DicomSeries> find_dicom_series(const fs::path& path) {

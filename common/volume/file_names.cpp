@@ -121,8 +121,8 @@ Available nifti_pair_data(const fs::path& header) {
 
 Available vtk_data(const fs::path& file) {
   const bool binary = header_field(file, ' ', {"binary"}).has_value();
-  const auto last = header_field(
-      file, ' ', {"lookup_table", "color_scalars", "vectors", "normals", "tensors"});
+  const auto last =
+      header_field(file, ' ', {"lookup_table", "color_scalars", "vectors", "normals", "tensors"});
   return bytes_beyond(file, last ? last->end : 0, !binary);
 }
 

@@ -27,8 +27,8 @@ struct DataBytes {
   bool compressed = true;
 };
 
-/// Those of `file` behind its header, or of the file that a detached header (.hdr .nhdr .mhd) names.
-/// Nothing where they are several; a Failure where it is not there.
+/// Those of `file` behind its header, or of the file that a detached header (.hdr .nhdr .mhd)
+/// names. Nothing where they are several; a Failure where it is not there.
 Result<std::optional<DataBytes>> data_bytes_of(const std::filesystem::path& file);
 
 }  // namespace goldthread

@@ -64,6 +64,9 @@ const Format* format_of(const fs::path& file) {
 // What ITK says in its exceptions, on one line.
 Failure not_readable(const fs::path& file, const Format& format, std::string reason) {
   std::replace(reason.begin(), reason.end(), '\n', ' ');
+  // Not the object's address, nor the text of an errno that belongs to something else.
+  if (const auto at = reason.find("): "); at != std::string::npos) reason.erase(0, at + 3);
+  if (const auto at = reason.find("Reason:"); at != std::string::npos) reason.erase(at);
   while (!reason.empty() && (reason.back() == ' ' || reason.back() == '.')) reason.pop_back();
   return failure_of(file, fmt::format("it is not readable as {}: {}", format.name, reason),
                     "the file is damaged or truncated, or its name ends wrongly");
@@ -233,7 +236,8 @@ Result<std::unique_ptr<std::byte[]>> read_voxels(const fs::path& file, const For
   return memory;
 }
 
-// Whether the file is large enough for `bytes` of voxels, as far as its header tells without reading.
+// Whether the file is large enough for `bytes` of voxels, as far as its header tells without
+// reading.
 std::optional<Failure> check_size(const fs::path& file, std::uint64_t bytes) {
   const auto available = data_bytes_of(file);
   if (!available) return available.failure();
@@ -321,6 +325,21 @@ Result<LoadedVolume> read_file(const fs::path& file, const Format& format,
   return loaded;
 }
 
+// ITK takes 32 bits for 16 of them and an intercept. Where the numbers fit, they go back into 16.
+StoredType narrowed(std::vector<std::byte>& pixels, StoredType type) {
+  if (type != StoredType::kInt32) return type;
+  std::vector<std::int16_t> narrow(pixels.size() / sizeof(std::int32_t));
+  for (std::size_t i = 0; i < narrow.size(); ++i) {
+    std::int32_t number;
+    std::memcpy(&number, pixels.data() + i * sizeof number, sizeof number);
+    narrow[i] = std::int16_t(number);
+    if (narrow[i] != number) return type;
+  }
+  const auto bytes = std::as_bytes(std::span(narrow));
+  pixels.assign(bytes.begin(), bytes.end());
+  return StoredType::kInt16;
+}
+
 Result<LoadedVolume> read_slices(const std::vector<fs::path>& files, const Format& format,
                                  VolumeInfo info, const LoadOptions& options, bool header_only) {
   auto first = open(files[0], format);
@@ -351,7 +370,8 @@ Result<LoadedVolume> read_slices(const std::vector<fs::path>& files, const Forma
     pixels.resize(slice->bytes_per_step());
     select_region(*slice->io, false);
     read_pixels(*slice->io, pixels.data());
-    if (auto failure = assembly.add(pixels, slice->type)) return *failure;
+    const StoredType type = narrowed(pixels, slice->type);
+    if (auto failure = assembly.add(pixels, type)) return *failure;
     if (options.progress) options.progress(double(i + 1) / double(files.size()));
   }
   return std::move(assembly).finish();

@@ -61,22 +61,30 @@ class Fields {
 std::uint64_t voxel_bytes_of(int code) {
   switch (code) {
     case 2:
-    case 256: return 1;
+    case 256:
+      return 1;
     case 4:
-    case 512: return 2;
-    case 128: return 3;
+    case 512:
+      return 2;
+    case 128:
+      return 3;
     case 8:
     case 16:
     case 768:
-    case 2304: return 4;
+    case 2304:
+      return 4;
     case 32:
     case 64:
     case 1024:
-    case 1280: return 8;
+    case 1280:
+      return 8;
     case 1536:
-    case 1792: return 16;
-    case 2048: return 32;
-    default: return 0;
+    case 1792:
+      return 16;
+    case 2048:
+      return 32;
+    default:
+      return 0;
   }
 }
 
@@ -121,11 +129,20 @@ StoredType NiftiVoxels::value_type() const {
   if (!rescaled()) return *type;
   double least = 0, greatest = 0;
   switch (*type) {
-    case StoredType::kUInt8: greatest = 255; break;
-    case StoredType::kInt8: least = -128, greatest = 127; break;
-    case StoredType::kUInt16: greatest = 65535; break;
-    case StoredType::kInt16: least = -32768, greatest = 32767; break;
-    default: return StoredType::kFloat32;
+    case StoredType::kUInt8:
+      greatest = 255;
+      break;
+    case StoredType::kInt8:
+      least = -128, greatest = 127;
+      break;
+    case StoredType::kUInt16:
+      greatest = 65535;
+      break;
+    case StoredType::kInt16:
+      least = -32768, greatest = 32767;
+      break;
+    default:
+      return StoredType::kFloat32;
   }
   const auto fits = [&](double voxel) {
     const double value = voxel * slope + intercept;
@@ -154,7 +171,8 @@ Result<NiftiVoxels> read_nifti_header(const std::filesystem::path& file) {
       return failure_of(file, fmt::format("its size along axis {} is {}", axis, size), mend);
   voxels.voxel_bytes = voxel_bytes_of(fields.number(kDatatype));
   if (voxels.voxel_bytes == 0)
-    return failure_of(file, fmt::format("NIfTI has no voxel type {}", fields.number(kDatatype)), mend);
+    return failure_of(file, fmt::format("NIfTI has no voxel type {}", fields.number(kDatatype)),
+                      mend);
   voxels.type = type_of(fields.number(kDatatype));
   read_scale(fields, voxels);
   if (std::memcmp(header->data() + kMagic, "n+1", 4) != 0) return voxels;

@@ -27,8 +27,8 @@ struct NiftiVoxels {
   StoredType value_type() const;
 };
 
-/// Reads the header of `file` (of its .hdr, for an .img), in either byte order. A Failure unless its
-/// sizes are above 0 and its type is one that the standard knows.
+/// Reads the header of `file` (of its .hdr, for an .img), in either byte order. A Failure unless
+/// its sizes are above 0 and its type is one that the standard knows.
 Result<NiftiVoxels> read_nifti_header(const std::filesystem::path& file);
 
 }  // namespace goldthread

@@ -118,20 +118,28 @@ void widen_to_float(std::span<const std::byte> from, VoxelType type, std::span<f
 
 void rescale(std::span<const std::byte> from, StoredType type, double slope, double intercept,
              VoxelType to_type, std::span<std::byte> to) {
-  const auto run = [&]<class T>(T) {
-    rescale_from<T>(from.data(), slope, intercept, to_type, to);
-  };
+  const auto run = [&]<class T>(T) { rescale_from<T>(from.data(), slope, intercept, to_type, to); };
   switch (type) {
-    case StoredType::kUInt8: return run(std::uint8_t{});
-    case StoredType::kInt8: return run(std::int8_t{});
-    case StoredType::kUInt16: return run(std::uint16_t{});
-    case StoredType::kInt16: return run(std::int16_t{});
-    case StoredType::kUInt32: return run(std::uint32_t{});
-    case StoredType::kInt32: return run(std::int32_t{});
-    case StoredType::kUInt64: return run(std::uint64_t{});
-    case StoredType::kInt64: return run(std::int64_t{});
-    case StoredType::kFloat32: return run(float{});
-    case StoredType::kFloat64: return run(double{});
+    case StoredType::kUInt8:
+      return run(std::uint8_t{});
+    case StoredType::kInt8:
+      return run(std::int8_t{});
+    case StoredType::kUInt16:
+      return run(std::uint16_t{});
+    case StoredType::kInt16:
+      return run(std::int16_t{});
+    case StoredType::kUInt32:
+      return run(std::uint32_t{});
+    case StoredType::kInt32:
+      return run(std::int32_t{});
+    case StoredType::kUInt64:
+      return run(std::uint64_t{});
+    case StoredType::kInt64:
+      return run(std::int64_t{});
+    case StoredType::kFloat32:
+      return run(float{});
+    case StoredType::kFloat64:
+      return run(double{});
   }
 }
 

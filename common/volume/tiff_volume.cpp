@@ -42,8 +42,8 @@ class TiffBytes {
     std::array<char, 4> start{};
     stream_.read(start.data(), 4);
     big_endian_ = start[0] == 'M';
-    is_tiff_ = stream_ && (std::memcmp(start.data(), "II", 2) == 0 ||
-                           std::memcmp(start.data(), "MM", 2) == 0);
+    is_tiff_ = stream_ &&
+               (std::memcmp(start.data(), "II", 2) == 0 || std::memcmp(start.data(), "MM", 2) == 0);
     wide_ = start[big_endian_ ? 3 : 2] == 43;
   }
   bool is_tiff() const { return is_tiff_; }
@@ -55,7 +55,8 @@ class TiffBytes {
     stream_.read(raw.data(), bytes);
     std::uint64_t value = 0;
     for (int i = 0; i < bytes; ++i)
-      value = value << 8 | static_cast<unsigned char>(raw[std::size_t(big_endian_ ? i : bytes - 1 - i)]);
+      value = value << 8 |
+              static_cast<unsigned char>(raw[std::size_t(big_endian_ ? i : bytes - 1 - i)]);
     return value;
   }
 
@@ -85,16 +86,25 @@ Result<int> count_pages(const fs::path& file) {
 
 std::optional<StoredType> stored_type_of(OIIO::TypeDesc type) {
   switch (type.basetype) {
-    case OIIO::TypeDesc::UINT8: return StoredType::kUInt8;
-    case OIIO::TypeDesc::INT8: return StoredType::kInt8;
-    case OIIO::TypeDesc::UINT16: return StoredType::kUInt16;
-    case OIIO::TypeDesc::INT16: return StoredType::kInt16;
-    case OIIO::TypeDesc::UINT32: return StoredType::kUInt32;
-    case OIIO::TypeDesc::INT32: return StoredType::kInt32;
+    case OIIO::TypeDesc::UINT8:
+      return StoredType::kUInt8;
+    case OIIO::TypeDesc::INT8:
+      return StoredType::kInt8;
+    case OIIO::TypeDesc::UINT16:
+      return StoredType::kUInt16;
+    case OIIO::TypeDesc::INT16:
+      return StoredType::kInt16;
+    case OIIO::TypeDesc::UINT32:
+      return StoredType::kUInt32;
+    case OIIO::TypeDesc::INT32:
+      return StoredType::kInt32;
     case OIIO::TypeDesc::HALF:
-    case OIIO::TypeDesc::FLOAT: return StoredType::kFloat32;
-    case OIIO::TypeDesc::DOUBLE: return StoredType::kFloat64;
-    default: return std::nullopt;
+    case OIIO::TypeDesc::FLOAT:
+      return StoredType::kFloat32;
+    case OIIO::TypeDesc::DOUBLE:
+      return StoredType::kFloat64;
+    default:
+      return std::nullopt;
   }
 }
 
@@ -129,8 +139,12 @@ Result<std::optional<Page>> describe_page(const fs::path& file, OIIO::ImageInput
   const auto type = stored_type_of(spec.format);
   if (!type || spec.depth > 1 || spec.width < 1 || spec.height < 1 || spec.nchannels < 1)
     return damaged(file, fmt::format("its page {} is of a kind that is not known", number + 1));
-  return std::optional(Page{file, number, {std::uint64_t(spec.width), std::uint64_t(spec.height), 1},
-                            spec.nchannels, *type, spacing_of(spec)});
+  return std::optional(Page{file,
+                            number,
+                            {std::uint64_t(spec.width), std::uint64_t(spec.height), 1},
+                            spec.nchannels,
+                            *type,
+                            spacing_of(spec)});
 }
 
 std::optional<Failure> add_pages_of(const fs::path& file, bool first_only,
@@ -149,12 +163,13 @@ std::optional<Failure> add_pages_of(const fs::path& file, bool first_only,
     if (auto failure = check_file_holds(file, {file_bytes, true}, pages.back().bytes()))
       return failure;
     if (pages.back().size != pages[0].size || pages.back().components != pages[0].components)
-      return failure_of(file,
-                        fmt::format("page {} has {}×{} pixels of {} components, the first {}×{} of {}",
-                                    number + 1, pages.back().size[0], pages.back().size[1],
-                                    pages.back().components, pages[0].size[0], pages[0].size[1],
-                                    pages[0].components),
-                        "keep only slices of one volume together");
+      return failure_of(
+          file,
+          fmt::format("page {} has {}×{} pixels of {} components, the first {}×{} of {}",
+                      number + 1, pages.back().size[0], pages.back().size[1],
+                      pages.back().components, pages[0].size[0], pages[0].size[1],
+                      pages[0].components),
+          "keep only slices of one volume together");
   }
   return std::nullopt;
 }
@@ -168,7 +183,8 @@ std::optional<Failure> describe(const fs::path& path, const std::vector<Page>& p
   info.geometry.spacing_mm = {first.spacing_mm, first.spacing_mm.x};
   if (pages.size() > 1)
     info.notes.push_back("TIFF does not tell the distance of slices: taken as wide as a pixel");
-  if (auto failure = check_geometry(path, {first.size[0], first.size[1], pages.size()}, info.geometry))
+  if (auto failure =
+          check_geometry(path, {first.size[0], first.size[1], pages.size()}, info.geometry))
     return failure;
   info.components = first.components;
   return choose_component(options, info);
@@ -187,9 +203,9 @@ Result<LoadedVolume> read_pages(const std::vector<Page>& pages, LoadedVolume des
       input = std::move(*opened);
     }
     constexpr std::array<OIIO::TypeDesc::BASETYPE, 10> kTypes{
-        OIIO::TypeDesc::UINT8,  OIIO::TypeDesc::INT8,  OIIO::TypeDesc::UINT16,
+        OIIO::TypeDesc::UINT8,  OIIO::TypeDesc::INT8,   OIIO::TypeDesc::UINT16,
         OIIO::TypeDesc::INT16,  OIIO::TypeDesc::UINT32, OIIO::TypeDesc::INT32,
-        OIIO::TypeDesc::UINT64, OIIO::TypeDesc::INT64, OIIO::TypeDesc::FLOAT,
+        OIIO::TypeDesc::UINT64, OIIO::TypeDesc::INT64,  OIIO::TypeDesc::FLOAT,
         OIIO::TypeDesc::DOUBLE};
     pixels.resize(page.bytes());
     // Asked anew, as the file may have changed since its header was read.

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// TIFF stacks, through OpenImageIO; internal to volume_io. Not through ITK, whose TIFF reader writes
-// beyond its memory where the pages of a damaged file differ in size.
+// TIFF stacks, through OpenImageIO; internal to volume_io. Not through ITK, whose TIFF reader
+// writes beyond its memory where the pages of a damaged file differ in size.
 
 #include <filesystem>
 

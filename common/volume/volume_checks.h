@@ -25,8 +25,8 @@ Failure failure_of(const std::filesystem::path& file, std::string what, std::str
 std::optional<Failure> check_geometry(const std::filesystem::path& file, const FileSize3& size,
                                       VolumeGeometry& geometry);
 
-/// Whether `available` bytes of a file can hold `data_bytes` of data, at best compressed by deflate,
-/// which never shrinks to less than 1/1032.
+/// Whether `available` bytes of a file can hold `data_bytes` of data, at best compressed by
+/// deflate, which never shrinks to less than 1/1032.
 std::optional<Failure> check_file_holds(const std::filesystem::path& file, DataBytes available,
                                         std::uint64_t data_bytes);
 

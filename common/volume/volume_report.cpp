@@ -256,8 +256,9 @@ void add_histogram(Report& report, const VolumeInfo& info) {
     return std::max(1, int(std::lround(std::log10(double(count)) / decades * heights)));
   };
   report.line("");
-  report.line(fmt::format("voxels per {:.3g} of value, on a logarithmic scale",
-                          (info.maximum - info.minimum) / double(counts.size())));
+  const std::string title = fmt::format("voxels per {:.3g} of value, on a logarithmic scale",
+                                        (info.maximum - info.minimum) / double(counts.size()));
+  for (const std::string& part : wrapped(title, report.columns())) report.line(part);
   int last_decade = -1;
   for (int row = kPlotRows - 1; row >= 0; --row) {
     // A row is labelled with the decade that its upper edge reaches, once each.
