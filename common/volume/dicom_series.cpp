@@ -34,6 +34,7 @@ struct Slice {
   glm::dvec3 row{1, 0, 0}, column{0, 1, 0};
   glm::dvec2 spacing{1, 1};  // along the row, down the column
   double thickness = 1;
+  bool cut_off = false;  // the file ends before its pixels do, which GDCM does not mind
 };
 
 const gdcm::ByteValue* bytes_of(const gdcm::DataSet& data, std::uint16_t group,
@@ -81,11 +82,25 @@ int short_of(const gdcm::DataSet& data, std::uint16_t group, std::uint16_t eleme
   return bytes[0] | bytes[1] << 8;  // the rare big-endian files swap rows' and columns' bytes alike
 }
 
+// Whether the file lacks pixels, or some of them. The reader stands before the first one.
+bool is_cut_off(const gdcm::Reader& reader, const Slice& slice) {
+  const auto at = std::int64_t(reader.GetStreamCurrentPosition());
+  const gdcm::File& file = reader.GetFile();
+  if (at < 0) return true;
+  if (file.GetHeader().GetDataSetTransferSyntax().IsEncapsulated()) return false;
+  const int samples = std::max(1, short_of(file.GetDataSet(), 0x0028, 0x0002));
+  const int bits = short_of(file.GetDataSet(), 0x0028, 0x0100);
+  const std::uint64_t pixels = std::uint64_t(slice.size.x) * std::uint64_t(slice.size.y) *
+                               std::uint64_t(slice.frames) * std::uint64_t(samples);
+  std::error_code error;
+  return std::uint64_t(at) + pixels * std::uint64_t(bits) / 8 > fs::file_size(slice.file, error);
+}
+
 std::optional<Slice> read_slice(const fs::path& file) {
   gdcm::Reader reader;
   reader.SetFileName(file.c_str());
   const gdcm::Tag pixels(0x7fe0, 0x0010);
-  if (!is_dicom_file(file) || !reader.ReadUpToTag(pixels)) return std::nullopt;
+  if (!is_dicom_file(file) || !reader.ReadUpToTag(pixels, {pixels})) return std::nullopt;
   const gdcm::DataSet& data = reader.GetFile().GetDataSet();
   Slice slice;
   slice.file = file;
@@ -106,6 +121,7 @@ std::optional<Slice> read_slice(const fs::path& file) {
   if (const auto s = numbers_of(data, 0x0028, 0x0030); s.size() == 2) slice.spacing = {s[1], s[0]};
   for (const std::uint16_t element : {std::uint16_t(0x0050), std::uint16_t(0x0088)})
     if (const auto n = numbers_of(data, 0x0018, element); !n.empty()) slice.thickness = n[0];
+  slice.cut_off = is_cut_off(reader, slice);
   return slice;
 }
 
@@ -158,7 +174,11 @@ void note_uneven_steps(const std::vector<Slice>& slices, double step,
         greatest));
 }
 
-DicomSeries assemble(std::vector<Slice> slices, std::vector<std::string> notes) {
+Result<DicomSeries> assemble(std::vector<Slice> slices, std::vector<std::string> notes) {
+  for (const Slice& slice : slices)
+    if (slice.cut_off)
+      return failure_of(slice.file, "it ends before its pixels do",
+                        "the file is truncated: copy it again");
   sort_slices(slices, notes);
   const Slice& first = slices.front();
   DicomSeries series;
