@@ -158,7 +158,10 @@ TEST(RayCaster, CopiesOfTheSameDataInOtherTypesGiveTheSamePicture) {
       const auto copy = make_volume(volume->info().geometry, type, [&](int i, int j, int k) {
         return std::min(volume->at(i, j, k), 127.0);
       });
-      EXPECT_LT(distance(picture, cast(scene, copy, positions)).greatest, 0.1)
+      // int16 is interpolated as 32768 + value, where a float is good to 1/256 of a value and a
+      // surface's place and normal feel it; the others keep 1/30000.
+      const double rounding = type == VoxelType::kInt16 ? 0.5 : 0.1;
+      EXPECT_LT(distance(picture, cast(scene, copy, positions)).greatest, rounding)
           << name << ' ' << name_of(type);
     }
   }

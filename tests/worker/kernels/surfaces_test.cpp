@@ -65,7 +65,8 @@ TEST(Isosurface, IsFoundBehindEmptinessThatWasLeaptOver) {
   for (int depth = 40; depth < 72; ++depth) {
     const auto volume = make_volume({.size = {17, 17, 96}}, VoxelType::kUInt8,
                                     [&](int, int, int k) { return k >= depth ? 200 : 0; });
-    const Scene scene = from_below(volume->info(), {{100, {1, 1, 1}, 1}});
+    Scene scene = from_below(volume->info(), {{100, {1, 1, 1}, 1}});
+    scene.camera->fovy_deg = 8;
     for (const Sample& sample : cast(scene, volume, pixel_centres({32, 32}, 5)))
       EXPECT_EQ(sample.alpha, 1) << depth;
   }
