@@ -151,7 +151,7 @@ Failure bad_command(const std::vector<std::string>& arguments) {
   if (arguments.empty()) {
     return usage("command line", "no command is given", "render, serve or info; see --help");
   }
-  if (arguments[0].rfind("-", 0) == 0) return unknown_word(nullptr, arguments[0]);
+  if (arguments[0].starts_with("-")) return unknown_word(nullptr, arguments[0]);
   return usage(printable(arguments[0]), "unknown command",
                fmt::format("did you mean \"{}\"?", nearest_name(arguments[0], kCommandNames)));
 }
@@ -165,7 +165,7 @@ Failure in_our_words(const CLI::ParseError& error, const Subcommand* sub,
     return usage(printable(text.substr(0, text.find(':'))), "its value is missing",
                  "give the option a value");
   }
-  if (!arguments.empty() && arguments[0].rfind("-", 0) == 0) {
+  if (!arguments.empty() && arguments[0].starts_with("-")) {
     return unknown_word(nullptr, arguments[0]);
   }
   if (!sub) return bad_command(arguments);

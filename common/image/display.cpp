@@ -2,6 +2,7 @@
 #include "common/image/display.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "common/image/color.h"
 
@@ -18,7 +19,7 @@ std::vector<std::uint8_t> display_rgb8(std::span<const float> rgba, ColorSpace c
       } else {
         // Ordered so that NaN becomes 0.
         const float clamped = std::min(std::max(0.0f, value), 1.0f);
-        rgb[3 * i + c] = static_cast<std::uint8_t>(clamped * 255 + 0.5f);
+        rgb[3 * i + c] = static_cast<std::uint8_t>(std::lround(clamped * 255));
       }
     }
   }

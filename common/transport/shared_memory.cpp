@@ -34,7 +34,7 @@ class Descriptor {
 };
 
 /// The mapping keeps the descriptor open, so that neighbours can find it.
-std::shared_ptr<std::byte> map(std::shared_ptr<Descriptor> descriptor, std::size_t bytes,
+std::shared_ptr<std::byte> map(const std::shared_ptr<Descriptor>& descriptor, std::size_t bytes,
                                int protection) {
   void* address = mmap(nullptr, bytes, protection, MAP_SHARED, descriptor->number(), 0);
   if (address == MAP_FAILED) fail("mmap", errno, "free memory on this host");
@@ -61,7 +61,7 @@ OwnedBlock make_shared_block(std::size_t bytes) {
   }
   OwnedBlock block;
   block.share = {static_cast<std::int32_t>(getpid()), descriptor->number(), bytes};
-  block.memory = map(std::move(descriptor), bytes, PROT_READ | PROT_WRITE);
+  block.memory = map(descriptor, bytes, PROT_READ | PROT_WRITE);
   return block;
 }
 
@@ -75,7 +75,7 @@ std::shared_ptr<const std::byte> map_shared_block(const SharedBlock& block) {
   if (static_cast<std::uint64_t>(status.st_size) != block.bytes) {
     throw FatalError({path, "is not as long as its owner says", "", ExitStatus::kClusterFailed});
   }
-  return map(std::move(descriptor), block.bytes, PROT_READ);
+  return map(descriptor, block.bytes, PROT_READ);
 }
 
 std::string host_name() {
