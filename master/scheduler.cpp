@@ -2,6 +2,7 @@
 #include "master/scheduler.h"
 
 #include <algorithm>
+#include <functional>
 #include <map>
 #include <utility>
 
@@ -45,23 +46,23 @@ void Scheduler::append_level(const TileGrid& grid, Level from, Level to, const C
 std::optional<Quantum> Scheduler::next(int worker) {
   Worker& taker = workers_.at(static_cast<std::size_t>(worker));
   if (std::cmp_greater_equal(taker.held.size(), taker.capacity)) return {};
-  Quantum quantum;
+  std::size_t place = next_;
   if (!returned_.empty()) {
-    quantum = returned_.back();
+    place = returned_.back();
     returned_.pop_back();
   } else if (next_ < queue_.size()) {
-    quantum = queue_[next_++];
+    ++next_;
   } else {
     return {};
   }
-  taker.held.push_back(quantum);
-  return quantum;
+  taker.held.push_back(place);
+  return queue_[place];
 }
 
 bool Scheduler::done(int worker, TileId tile, Level to) {
   auto& held = workers_.at(static_cast<std::size_t>(worker)).held;
-  const auto found = std::find_if(held.begin(), held.end(), [&](const Quantum& quantum) {
-    return quantum.tile == tile && quantum.to == to;
+  const auto found = std::find_if(held.begin(), held.end(), [&](std::size_t place) {
+    return queue_[place].tile == tile && queue_[place].to == to;
   });
   if (found == held.end()) return false;
   held.erase(found);
@@ -73,6 +74,7 @@ bool Scheduler::done(int worker, TileId tile, Level to) {
 void Scheduler::worker_lost(int worker) {
   Worker& lost = workers_.at(static_cast<std::size_t>(worker));
   returned_.insert(returned_.end(), lost.held.begin(), lost.held.end());
+  std::sort(returned_.begin(), returned_.end(), std::greater<>());
   lost.held.clear();
   lost.capacity = 0;
 }

@@ -35,7 +35,8 @@ class Scheduler {
   std::optional<Quantum> next(int worker);
   /// `worker` has finished a quantum; anything it does not hold is ignored. True if it was held.
   bool done(int worker, TileId tile, Level to);
-  /// What `worker` held is given out again, first of all; it gets nothing any more.
+  /// What `worker` held is given out again, first of all and in the same order; it gets nothing
+  /// any more.
   void worker_lost(int worker);
 
   /// Quanta of the view that are not done yet.
@@ -47,14 +48,14 @@ class Scheduler {
  private:
   struct Worker {
     int capacity = 0;
-    std::vector<Quantum> held;
+    std::vector<std::size_t> held;  // places in queue_
   };
   void append_level(const TileGrid& grid, Level from, Level to, const CostHistory& costs);
 
   std::vector<Worker> workers_;
   std::vector<Quantum> queue_;  // in order; those before next_ are given out
   std::size_t next_ = 0;
-  std::vector<Quantum> returned_;  // of lost workers, to be given out first
+  std::vector<std::size_t> returned_;  // of lost workers, to be given out first, from the back
   std::size_t open_ = 0;
   std::vector<std::pair<Level, std::size_t>> done_;
 };

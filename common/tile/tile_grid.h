@@ -24,6 +24,11 @@ constexpr Level kCoarsestLevel{4};
 constexpr Level kPixelLevel{0};
 /// As a quantum's `from`: the tile holds nothing yet.
 constexpr Level kNoLevel{5};
+/// Whether there are levels that take a tile from `from` to `to`. For bytes of a peer.
+constexpr bool is_step(Level from, Level to) {
+  return kPixelLevel.log2_spacing <= to.log2_spacing && to.log2_spacing < from.log2_spacing &&
+         from.log2_spacing <= kNoLevel.log2_spacing;
+}
 
 /// A sample's place in its tile, in pixels from the tile's first.
 struct SampleOffset {
@@ -54,7 +59,7 @@ struct TileGrid {
 };
 
 /// The samples that take a tile of `size` pixels from level `from` (kNoLevel: from nothing) to the
-/// finer level `to`, each once, in the one order in which they travel: in blocks of 4×4, for the
+/// finer level `to` (is_step(from, to)), each once, in the one order in which they travel: in blocks of 4×4, for the
 /// sake of coherent packets. Above the pixel level they include the replicated column and row at or
 /// beyond the right and lower edges, so that each tile can be reconstructed alone.
 std::vector<SampleOffset> new_samples(ImageSize size, Level from, Level to);
