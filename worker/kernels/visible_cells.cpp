@@ -8,10 +8,8 @@ namespace {
 
 constexpr std::size_t kGatherPadding = 3;
 
-// One pass along an axis of a distance transform by separable passes: cells take the least of
-// their own and their neighbours' + 1 — along one axis, which for Chebyshev distance needs the
-// neighbours' whole rows. So instead each pass visits all 26 neighbours in raster order, forth and
-// back: 13 lie behind in each direction (Rosenfeld and Pfaltz 1968; exact for this metric).
+// Chebyshev distances in two passes, in raster order and back: each looks at the 13 of the 26
+// neighbours that it has passed (Rosenfeld and Pfaltz 1968; exact for this metric).
 class ChessboardTransform {
  public:
   ChessboardTransform(std::vector<std::uint8_t>& distances, glm::ivec3 counts)
