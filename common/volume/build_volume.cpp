@@ -163,7 +163,7 @@ class BlockFiller {
   void count_row(const std::vector<S>& row, Tally& tally) const {
     if constexpr (std::is_floating_point_v<T>) {
       std::uint64_t not_finite = 0;
-      for (const S value : row) not_finite += value != value;
+      for (const S value : row) not_finite += std::isfinite(value) ? 0 : 1;
       tally.not_finite += not_finite;
     } else {
       for (const S value : row) ++tally.counts[value];

@@ -84,7 +84,7 @@ Result<int> count_pages(const fs::path& file) {
   return int(seen.size());
 }
 
-std::optional<StoredType> stored_type_of(OIIO::TypeDesc type) {
+std::optional<StoredType> stored_type_of(const OIIO::TypeDesc& type) {
   switch (type.basetype) {
     case OIIO::TypeDesc::UINT8:
       return StoredType::kUInt8;

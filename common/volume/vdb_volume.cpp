@@ -4,8 +4,12 @@
 #include "common/volume/vdb_volume.h"
 
 #include <fmt/format.h>
+#include <openvdb/io/GridDescriptor.h>
 #include <openvdb/openvdb.h>
 #include <openvdb/tools/Dense.h>
+
+#include <algorithm>
+#include <fstream>
 
 #include "common/volume/volume_checks.h"
 
@@ -90,8 +94,32 @@ std::optional<Failure> densify(const openvdb::GridBase& grid, const openvdb::Coo
   return std::nullopt;
 }
 
+// The list of grids at the front of a file, read for where the last one ends: OpenVDB does not mind
+// if that is beyond the file, and leaves what it lacks as it is.
+class GridList : public openvdb::io::Archive {
+ public:
+  std::uint64_t end_of_grids(const fs::path& file) {
+    std::ifstream stream(file, std::ios::binary);
+    readHeader(stream);
+    setFormatVersion(stream);
+    setLibraryVersion(stream);
+    openvdb::MetaMap().readMeta(stream);
+    std::uint64_t end = 0;
+    const std::int32_t count = readGridCount(stream);
+    for (std::int32_t i = 0; i < count && stream; ++i) {
+      openvdb::io::GridDescriptor grid;
+      grid.read(stream);
+      end = std::max(end, std::uint64_t(std::max<std::int64_t>(grid.getEndPos(), 0)));
+      grid.seekToEnd(stream);
+    }
+    return end;
+  }
+};
+
 Result<LoadedVolume> read(const fs::path& file, const LoadOptions& options, bool header_only) {
   openvdb::initialize();
+  if (GridList().end_of_grids(file) > fs::file_size(file))
+    return failure_of(file, "it ends before its grids do", "the file is truncated: copy it again");
   openvdb::io::File stream(file.string());
   stream.open(false);
   LoadedVolume loaded;

@@ -44,12 +44,9 @@ int width_of(std::string_view text) {
 // ASCII in place of the few other characters that this program's own texts use.
 std::string plain(const std::string& text) {
   std::string out;
-  for (std::size_t i = 0; i < text.size(); ++i) {
-    const auto c = static_cast<unsigned char>(text[i]);
-    if (c < 0x20 || c == 0x7F)
-      out += '?';  // a file's name must not steer the terminal
-    else
-      out += text[i];
+  for (const char letter : text) {
+    const auto c = static_cast<unsigned char>(letter);
+    out += c < 0x20 || c == 0x7F ? '?' : letter;  // a file's name must not steer the terminal
   }
   return out;
 }
