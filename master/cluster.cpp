@@ -25,12 +25,18 @@ std::string rank_name(Rank rank, const RankState& state) {
 Cluster::Cluster(Transport& transport, Topology topology, ClusterOptions options)
     : post_(transport),
       topology_(topology),
-      options_(options),
+      options_(std::move(options)),
       ranks_(static_cast<std::size_t>(topology.size())),
       scheduler_({}),
       bands_(static_cast<std::size_t>(topology.compositors)) {
   ranks_[0].role = Role::kMaster;
   ranks_[0].greeted = true;
+}
+
+void Cluster::check_interrupted() const {
+  if (!options_.interrupted()) return;
+  throw FatalError(
+      {"goldthread", "was interrupted", "nothing was written", ExitStatus::kClusterFailed});
 }
 
 void Cluster::greet() {
@@ -45,12 +51,13 @@ void Cluster::greet() {
            "did not say hello within " + std::to_string(kGreetingTimeout.count()) + " s",
            "look at that host's log", ExitStatus::kClusterFailed});
     }
+    check_interrupted();
     if (!handle_one()) post_.wait(kIdleWait);
   }
   begin_session();
 }
 
-void Cluster::on(Rank from, Hello message) {
+void Cluster::on(Rank from, const Hello& message) {
   RankState& state = ranks_.at(static_cast<std::size_t>(from.value));
   state.role = message.role;
   state.host = message.host;
@@ -110,6 +117,7 @@ VolumeInfo Cluster::load_volume(const SceneVolume& volume,
     }
   }
   while (std::cmp_less(mapped_, topology_.workers)) {
+    check_interrupted();
     if (!handle_one()) post_.wait(kIdleWait);
     check_liveness();
   }

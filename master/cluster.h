@@ -26,6 +26,8 @@ using Clock = std::chrono::steady_clock;
 struct ClusterOptions {
   int threads = 0;           ///< per worker; 0: the cores of its node / the workers on it
   bool interactive = false;  ///< compute threads give way to everything else
+  /// Asked while waiting for other ranks; true ends the job with a FatalError.
+  std::function<bool()> interrupted = [] { return false; };
 };
 
 struct RankState {
@@ -116,7 +118,7 @@ class Cluster {
 
  private:
   void handle(Rank from, ToMaster message);
-  void on(Rank from, Hello message);
+  void on(Rank from, const Hello& message);
   void on(Rank, Heartbeat) {}
   void on(Rank from, LoadProgress message);
   void on(Rank from, VolumeLoaded message);
@@ -132,6 +134,7 @@ class Cluster {
   }
   void begin_session();
   void send_to_workers(const ToWorker& message);
+  void check_interrupted() const;
   void check_liveness();
   void lose(Rank rank);
   /// Handles one message if there is one; false if there was none.

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "worker/worker_role.h"
 
+#include <exception>
+#include <new>
 #include <string>
 #include <utility>
 
@@ -17,6 +19,13 @@ namespace {
 constexpr std::chrono::milliseconds kIdleWait{50};
 constexpr std::chrono::seconds kFarewell{2};
 constexpr std::chrono::milliseconds kLoadingWait{20};
+
+/// What no function foresaw: memory that is not there, above all.
+Failure failure_of(std::string where, const std::exception& error) {
+  const bool memory = dynamic_cast<const std::bad_alloc*>(&error) != nullptr;
+  return {std::move(where), memory ? "there is not enough memory" : error.what(),
+          memory ? "free memory on this host" : "please report this", ExitStatus::kClusterFailed};
+}
 
 }  // namespace
 
@@ -35,6 +44,8 @@ bool WorkerRole::run() {
       heartbeat_.beat(post_);
     } catch (const FatalError& error) {
       post_.to_master(RankFailed{error.failure()});
+    } catch (const std::exception& error) {
+      post_.to_master(RankFailed{failure_of("rank " + std::to_string(post_.rank().value), error)});
     }
     if (!stop_) post_.wait(loading_ ? kLoadingWait : kIdleWait);
   }
@@ -63,6 +74,8 @@ void WorkerRole::on(const LoadVolume& message) {
       return LoadedBlock{std::move(loaded->info), block.share, std::move(block.memory)};
     } catch (const FatalError& error) {
       return error.failure();
+    } catch (const std::exception& error) {
+      return failure_of(message.file, error);
     }
   });
 }

@@ -71,6 +71,12 @@ class PendingFile {
 
 }  // namespace
 
+void expect_writable(const fs::path& path) {
+  std::error_code none;
+  if (fs::is_directory(path, none)) fail(path, std::strerror(EISDIR));
+  const PendingFile file(path);
+}
+
 void write_whole_file(const fs::path& path, std::span<const unsigned char> bytes) {
   PendingFile file(path);
   file.write(bytes);

@@ -10,6 +10,10 @@
 
 namespace goldthread {
 
+/// Throws FatalError (kClusterFailed) if the file could not be replaced or made: to be asked before
+/// the work that ends in it. Leaves nothing behind.
+void expect_writable(const std::filesystem::path& path);
+
 /// Replaces or makes the file. Throws FatalError (kClusterFailed) with the system's reason; then
 /// nothing new is left behind and what was there before is untouched.
 void write_whole_file(const std::filesystem::path& path, std::span<const unsigned char> bytes);

@@ -42,7 +42,7 @@ struct RoleEnd {
 /// Whatever happens, the other ranks are told to stop.
 RoleEnd run_master(Transport& transport, Topology topology, const Options& options) {
   const bool serve = options.command == Command::kServe;
-  Cluster cluster(transport, topology, {options.threads.value_or(0), serve});
+  Cluster cluster(transport, topology, {options.threads.value_or(0), serve, interrupted});
   RoleEnd end;
   try {
     cluster.greet();
@@ -72,6 +72,7 @@ int run_in_threads(const Options& options) {
   const Topology topology{options.compositors, options.workers.value_or(1)};
   const LoopbackNetwork network(topology.size());
   std::vector<std::unique_ptr<Transport>> transports;
+  transports.reserve(static_cast<std::size_t>(topology.size()));
   for (int i = 0; i < topology.size(); ++i) transports.push_back(network.connect({i}));
   std::vector<std::jthread> ranks;
   for (int i = 1; i < topology.size(); ++i) {

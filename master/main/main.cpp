@@ -26,12 +26,14 @@ std::optional<std::string> environment(const std::string& name) {
 
 /// Of the processes of an MPI job the first speaks for all about what all of them see.
 bool speaks() {
-  const auto rank = environment("OMPI_COMM_WORLD_RANK");
-  return !rank || *rank == "0";
+  for (const char* variable : {"OMPI_COMM_WORLD_RANK", "PMIX_RANK"}) {
+    if (const auto rank = environment(variable)) return *rank == "0";
+  }
+  return true;
 }
 
-int fail(const Failure& failure, bool aloud) {
-  if (aloud) std::fprintf(stderr, "%s\n", failure.line().c_str());
+int fail(const Failure& failure) {
+  std::fprintf(stderr, "%s\n", failure.line().c_str());
   return static_cast<int>(failure.status);
 }
 
@@ -60,17 +62,18 @@ int run(const Options& options) {
 
 int main(int argc, char** argv) {
   const auto parsed = parse_command_line({argv + 1, argv + argc}, environment);
-  if (!parsed) return fail(parsed.failure(), speaks());
+  // A silent process must not end with a status: mpirun would end the first before it has spoken.
+  if (!speaks() && (!parsed || std::holds_alternative<TextOutcome>(*parsed))) return 0;
+  if (!parsed) return fail(parsed.failure());
   if (const auto* text = std::get_if<TextOutcome>(&*parsed)) {
-    if (speaks()) std::fputs(text->text.c_str(), stdout);
+    std::fputs(text->text.c_str(), stdout);
     return 0;
   }
   try {
     return run(std::get<Options>(*parsed));
   } catch (const FatalError& error) {
-    return fail(error.failure(), true);
+    return fail(error.failure());
   } catch (const std::exception& error) {
-    return fail({"goldthread", error.what(), "please report this", ExitStatus::kClusterFailed},
-                true);
+    return fail({"goldthread", error.what(), "please report this", ExitStatus::kClusterFailed});
   }
 }

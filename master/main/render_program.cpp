@@ -5,12 +5,14 @@
 
 #include <fstream>
 #include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
 #include "common/image/display.h"
 #include "common/image/image_file.h"
 #include "common/image/sequence_path.h"
+#include "common/image/whole_file.h"
 #include "common/scene/camera.h"
 #include "common/scene/resolve.h"
 #include "common/scene/scene_file.h"
@@ -33,6 +35,13 @@ class Output {
       single_ = options.output;
     value_or_throw(image_path(path(0).string()));
   }
+  /// Whether a frame has no place is found before the first is computed.
+  void expect_writable(int frames) const {
+    std::set<std::filesystem::path> folders;
+    for (int i = 0; i < frames; ++i) {
+      if (folders.insert(path(i).parent_path()).second) goldthread::expect_writable(path(i));
+    }
+  }
   std::filesystem::path path(int frame) const { return pattern_ ? pattern_->at(frame) : single_; }
 
  private:
@@ -52,12 +61,28 @@ void write_frame(const std::filesystem::path& path, const Scene& scene,
   }
 }
 
+/// A pipe, a terminal and what a link like /dev/stdout names are written as they are; only a file
+/// can be replaced as a whole.
+bool is_stream(const std::filesystem::path& path) {
+  std::error_code none;
+  return std::filesystem::is_other(path, none) || std::filesystem::is_symlink(path, none);
+}
+
+void expect_report_writable(const std::string& path) {
+  if (!is_stream(path)) expect_writable(path);
+}
+
 void write_report(Cluster& cluster, const std::string& path, const std::vector<ViewState>& frames,
                   double load_seconds) {
   cluster.request_counters();
   while (!cluster.counters_complete()) cluster.poll(std::chrono::milliseconds(20));
+  const std::string report = report_json(cluster, frames, load_seconds);
+  if (!is_stream(path)) {
+    write_whole_file(path, {reinterpret_cast<const unsigned char*>(report.data()), report.size()});
+    return;
+  }
   std::ofstream file(path);
-  file << report_json(cluster, frames, load_seconds);
+  file << report;
   file.close();
   if (!file) {
     throw FatalError({path, "cannot be written", "choose another place with --report",
@@ -74,6 +99,9 @@ std::string count_of(std::uint64_t number) {
 
 void run_render(Cluster& cluster, const Options& options) {
   const Output output(options);
+  const Orbit orbit = options.orbit.value_or(Orbit{1, 0});
+  output.expect_writable(orbit.frames);
+  if (options.report) expect_report_writable(*options.report);
   Scene scene = scene_of(options);
   const auto begin = Clock::now();
   {
@@ -91,7 +119,6 @@ void run_render(Cluster& cluster, const Options& options) {
   if (options.time_s) request.time = std::chrono::duration<double>(*options.time_s);
   request.interrupted = interrupted;
   request.worker_lost = log_lost_worker;
-  const Orbit orbit = options.orbit.value_or(Orbit{1, 0});
   const Camera first = *scene.camera;
   std::vector<ViewState> views;
   Progress progress("rendering");
