@@ -2,6 +2,7 @@
 #pragma once
 // Typed messages over a transport: encodes, counts what was sent by kind, and decodes what comes.
 
+#include <exception>
 #include <map>
 #include <string>
 
@@ -41,6 +42,17 @@ class Post {
   void wait(std::chrono::microseconds at_most) { transport_.wait(at_most); }
   void wake() { transport_.wake(); }
   void flush(std::chrono::milliseconds at_most) { transport_.flush(at_most); }
+
+  /// Tells the master of an exception that this rank cannot mend, which ends the job.
+  void tell_failure(const std::exception& error) {
+    if (const auto* fatal = dynamic_cast<const FatalError*>(&error)) {
+      to_master(RankFailed{fatal->failure()});
+    } else {
+      to_master(
+          RankFailed{{"rank " + std::to_string(rank().value), error.what(),
+                      "free memory on its host, or report this", ExitStatus::kClusterFailed}});
+    }
+  }
 
   std::vector<MessageCount> sent() const {
     std::vector<MessageCount> counts;

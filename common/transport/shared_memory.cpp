@@ -10,6 +10,7 @@
 #include <climits>
 #include <cstring>
 #include <fstream>
+#include <optional>
 
 namespace goldthread {
 namespace {
@@ -42,6 +43,20 @@ std::shared_ptr<std::byte> map(const std::shared_ptr<Descriptor>& descriptor, st
           [bytes, descriptor](std::byte* memory) { munmap(memory, bytes); }};
 }
 
+/// What can be had without driving the host out of memory, in bytes; nothing if it does not say.
+std::optional<std::size_t> available_memory() {
+  std::ifstream file("/proc/meminfo");
+  std::string name;
+  std::size_t kib = 0;
+  std::size_t sum = 0;
+  bool known = false;
+  for (std::string unit; file >> name >> kib && std::getline(file, unit);) {
+    known = known || name == "MemAvailable:";
+    if (name == "MemAvailable:" || name == "SwapFree:") sum += kib << 10;
+  }
+  return known ? std::optional(sum) : std::nullopt;
+}
+
 std::string first_line(const char* path) {
   std::ifstream file(path);
   std::string line;
@@ -54,10 +69,14 @@ std::string first_line(const char* path) {
 OwnedBlock make_shared_block(std::size_t bytes) {
   auto descriptor = std::make_shared<Descriptor>(memfd_create("goldthread volume", MFD_CLOEXEC));
   if (descriptor->number() < 0) fail("memfd_create", errno, "");
+  const std::string mend =
+      "free memory on this host: the volume needs " + std::to_string(bytes >> 20) + " MiB";
+  // Anonymous memory has no limit of its own: asked for more than there is, the kernel would kill
+  // processes instead of refusing.
+  if (bytes > available_memory().value_or(bytes)) fail("memfd_create", ENOMEM, mend);
   // Pages are taken now, so that a lack of memory is an error here and no signal later.
   if (const int error = posix_fallocate(descriptor->number(), 0, static_cast<off_t>(bytes))) {
-    fail("posix_fallocate", error,
-         "free memory on this host: the volume needs " + std::to_string(bytes >> 20) + " MiB");
+    fail("posix_fallocate", error, mend);
   }
   OwnedBlock block;
   block.share = {static_cast<std::int32_t>(getpid()), descriptor->number(), bytes};
