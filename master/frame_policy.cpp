@@ -24,7 +24,7 @@ FrameAction decide_waiting(const FrameState& state) {
 
 FrameAction decide(const FrameState& state) {
   if (state.input_waiting) return decide_waiting(state);
-  if (!state.audience_ready) return FrameAction::kRefine;
+  if (!state.audience_ready || state.final_shown) return FrameAction::kRefine;
   if (state.finished && !state.moving && !state.final_shown) return FrameAction::kShowFinal;
   if (state.better_ready && !worth_waiting(state)) return FrameAction::kShow;
   return FrameAction::kRefine;
