@@ -52,6 +52,7 @@ void ComputePool::push(const RenderTile& quantum) {
 
 std::vector<ComputePool::Done> ComputePool::take_done() {
   const std::lock_guard lock(mutex_);
+  if (failure_) std::rethrow_exception(std::exchange(failure_, nullptr));
   return std::exchange(outbox_, {});
 }
 
@@ -66,9 +67,21 @@ void ComputePool::work(const std::stop_token& stop) {
     queue_.pop_front();
     const auto view = view_;
     lock.unlock();
-    cast(*view, quantum, stop);
+    try {
+      cast(*view, quantum, stop);
+    } catch (...) {
+      note_failure();
+    }
     lock.lock();
   }
+}
+
+void ComputePool::note_failure() {
+  {
+    const std::lock_guard lock(mutex_);
+    if (!failure_) failure_ = std::current_exception();
+  }
+  notify_();
 }
 
 void ComputePool::cast(const CastView& view, const RenderTile& quantum,

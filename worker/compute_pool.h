@@ -8,6 +8,7 @@
 #include <chrono>
 #include <condition_variable>
 #include <deque>
+#include <exception>
 #include <functional>
 #include <memory>
 #include <mutex>
@@ -34,7 +35,7 @@ class ComputePool {
   };
 
   /// `threads` threads, which give way to all others if `idle_priority`; `notify` is called from
-  /// them when the outbox is no longer empty.
+  /// them when take_done() has something to tell.
   ComputePool(unsigned threads, bool idle_priority, std::function<void()> notify);
   ~ComputePool();
 
@@ -42,13 +43,15 @@ class ComputePool {
   void begin_view(std::shared_ptr<const CastView> view);
   /// Of another epoch than the view's: ignored.
   void push(const RenderTile& quantum);
-  /// What was finished since the last call; never of a stale epoch.
+  /// What was finished since the last call; never of a stale epoch. Throws what a thread failed
+  /// with, once.
   std::vector<Done> take_done();
   /// What the threads have spent on quanta, finished or abandoned.
   std::chrono::duration<double> busy() const;
 
  private:
   void work(const std::stop_token& stop);
+  void note_failure();
   void cast(const CastView& view, const RenderTile& quantum, const std::stop_token& stop);
 
   std::function<void()> notify_;
@@ -57,6 +60,7 @@ class ComputePool {
   std::shared_ptr<const CastView> view_;
   std::deque<RenderTile> queue_;
   std::vector<Done> outbox_;
+  std::exception_ptr failure_;
   std::atomic<std::uint32_t> epoch_{0};
   std::atomic<std::int64_t> busy_ns_{0};
   std::vector<std::jthread> threads_;  // last: they use all of the above

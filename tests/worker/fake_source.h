@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+// Sources of samples whose progress a test can see and hold.
+
+#include <atomic>
+#include <condition_variable>
+#include <mutex>
+#include <span>
+#include <stdexcept>
+
+#include "worker/sample_source.h"
+
+namespace goldthread {
+
+/// Each sample is its own position; counts batches and rays.
+class CountingSource : public SampleSource {
+ public:
+  CastCounts cast(std::span<const PixelPosition> positions,
+                  std::span<Sample> samples) const override {
+    ++batches;
+    for (std::size_t i = 0; i < positions.size(); ++i) {
+      samples[i] = {positions[i].x, positions[i].y, 0, 1};
+    }
+    return {positions.size(), 10 * positions.size()};
+  }
+  mutable std::atomic<int> batches{0};
+};
+
+/// Stops in each batch until the test lets it go on.
+class HeldSource final : public CountingSource {
+ public:
+  CastCounts cast(std::span<const PixelPosition> positions,
+                  std::span<Sample> samples) const override {
+    std::unique_lock lock(mutex_);
+    ++entered_;
+    changed_.notify_all();
+    changed_.wait(lock, [&] { return allowed_ > 0; });
+    --allowed_;
+    return CountingSource::cast(positions, samples);
+  }
+  /// Returns once `count` batches have been begun since the start.
+  void wait_until_entered(int count) const {
+    std::unique_lock lock(mutex_);
+    changed_.wait(lock, [&] { return entered_ >= count; });
+  }
+  void allow(int count) const {
+    const std::lock_guard lock(mutex_);
+    allowed_ += count;
+    changed_.notify_all();
+  }
+
+ private:
+  mutable std::mutex mutex_;
+  mutable std::condition_variable changed_;
+  mutable int entered_ = 0;
+  mutable int allowed_ = 0;
+};
+
+class FailingSource final : public SampleSource {
+ public:
+  CastCounts cast(std::span<const PixelPosition>, std::span<Sample>) const override {
+    throw std::runtime_error("the ray caster fell over");
+  }
+};
+
+}  // namespace goldthread
