@@ -30,11 +30,12 @@ bool CompositorRole::run() {
         const auto begin = std::chrono::steady_clock::now();
         std::visit([&](auto& value) { on(std::move(value)); }, message->second);
         busy_ += std::chrono::steady_clock::now() - begin;
+        heartbeat_.beat(post_);  // also when messages never end
       }
       forward_input();
       heartbeat_.beat(post_);
-    } catch (const FatalError& error) {
-      post_.to_master(RankFailed{error.failure()});
+    } catch (const std::exception& error) {
+      post_.tell_failure(error);
     }
     if (!stop_) post_.wait(kIdleWait);
   }
@@ -44,27 +45,38 @@ bool CompositorRole::run() {
 }
 
 void CompositorRole::on(const BeginSession& message) {
+  if (message.compositors == 0) {
+    throw FatalError({"rank " + std::to_string(post_.rank().value),
+                      "was given a session without compositors", "", ExitStatus::kClusterFailed});
+  }
   compositors_ = static_cast<int>(message.compositors);
 }
 
-void CompositorRole::on(BeginView message) {
+void CompositorRole::on(const BeginView& message) {
   if (!message.grid.valid()) {
     throw FatalError({"rank " + std::to_string(post_.rank().value),
                       "was given a view without pixels", "", ExitStatus::kClusterFailed});
   }
   const Topology topology{compositors_, 1};
   const Band band = band_of(message.grid, topology.compositor_index(post_.rank()), compositors_);
-  view_ = std::move(message);
+  view_ = message;
   samples_.emplace(view_->grid, band);
   told_level_.reset();
+  if (early_.empty() || early_.front().epoch > view_->epoch) return;
   for (const Samples& early : std::exchange(early_, {})) {
     if (early.epoch == view_->epoch) place(early);
   }
 }
 
+void CompositorRole::keep_early(Samples message) {
+  if (!early_.empty() && message.epoch < early_.front().epoch) return;
+  if (!early_.empty() && message.epoch > early_.front().epoch) early_.clear();
+  early_.push_back(std::move(message));
+}
+
 void CompositorRole::on(Samples message) {
   if (!view_ || message.epoch > view_->epoch) {
-    early_.push_back(std::move(message));
+    keep_early(std::move(message));
     return;
   }
   if (message.epoch == view_->epoch) place(message);
@@ -73,7 +85,8 @@ void CompositorRole::on(Samples message) {
 void CompositorRole::place(const Samples& message) {
   const std::span samples(reinterpret_cast<const Sample*>(message.colors.data()),
                           message.colors.size() / sizeof(Sample));
-  if (!samples_->place(message.tile, message.from, message.to, samples)) {
+  if (message.colors.size() % sizeof(Sample) != 0 ||
+      !samples_->place(message.tile, message.from, message.to, samples)) {
     throw FatalError({"rank " + std::to_string(post_.rank().value),
                       "was sent samples that do not fit tile " + std::to_string(message.tile.value),
                       "start the same build of goldthread on every host",
@@ -110,20 +123,9 @@ void CompositorRole::on(const CollectBand& message) {
   post_.to_master(std::move(picture));
 }
 
-std::size_t CompositorRole::bands_with_pixels() const {
-  std::size_t count = 0;
-  for (int i = 0; i < compositors_; ++i) {
-    const Band band = band_of(view_->grid, i, compositors_);
-    count += band.last_row > band.first_row ? 1 : 0;
-  }
-  return count;
-}
-
 void CompositorRole::on(EncodedBand message) {
-  if (!gateway_ || !view_) return;
-  if (auto picture = assembly_.add(std::move(message), bands_with_pixels())) {
-    gateway_->publish(std::move(*picture));
-  }
+  if (!gateway_) return;
+  if (auto picture = assembly_.add(std::move(message))) gateway_->publish(std::move(*picture));
 }
 
 void CompositorRole::on(OpenGateway message) {

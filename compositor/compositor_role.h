@@ -25,7 +25,7 @@ class CompositorRole {
 
  private:
   void on(const BeginSession& message);
-  void on(BeginView message);
+  void on(const BeginView& message);
   void on(Samples message);
   void on(const Present& message);
   void on(const CollectBand& message);
@@ -36,9 +36,9 @@ class CompositorRole {
   void on(Reply message);
   void on(const ReportCounters& message);
   void on(const Stop& message);
-  void place(const Samples& samples);
+  void place(const Samples& message);
+  void keep_early(Samples message);
   void forward_input();
-  std::size_t bands_with_pixels() const;
 
   Post post_;
   HeartbeatSender heartbeat_;
@@ -47,7 +47,8 @@ class CompositorRole {
   std::optional<BeginView> view_;
   std::optional<SampleArray> samples_;
   std::optional<Level> told_level_;
-  /// Samples that overtook the BeginView of their epoch, on their way from another rank.
+  /// Samples that overtook the BeginView of their epoch, on their way from another rank. All of one
+  /// epoch, the newest: it shows that the master has given up the views before.
   std::vector<Samples> early_;
   PictureAssembly assembly_;
   std::chrono::steady_clock::duration busy_{0};

@@ -4,7 +4,7 @@
 // replaces an older one that is not whole yet, and one older than what was completed is dropped: a
 // viewer never sees bands of different views side by side.
 
-#include <cstddef>
+#include <cstdint>
 #include <optional>
 
 #include "common/protocol/messages.h"
@@ -14,12 +14,16 @@ namespace goldthread {
 
 class PictureAssembly {
  public:
-  /// Adds a band; the whole picture once each of its `bands` non-empty bands is there.
-  std::optional<Picture> add(EncodedBand band, std::size_t bands);
+  /// Adds a band; the whole picture once its bands cover it. A band that is there already, or of
+  /// another size of picture than the first one, is dropped.
+  std::optional<Picture> add(EncodedBand band);
 
  private:
-  std::uint32_t newest_ = 0;  // picture number that is being put together
+  void begin(const EncodedBand& band);
+
+  std::optional<std::uint32_t> newest_;  // picture number that is being put together
   bool complete_ = false;
+  std::int64_t pixels_ = 0;  // that the bands so far cover
   Picture picture_;
 };
 

@@ -78,17 +78,25 @@ struct ErrorSum {
   }
 };
 
+/// The last sample along an axis: of the last pixel, or replicated at or beyond the tile's edge.
+int last_sample(int extent, int spacing) {
+  return spacing == 1 ? extent - 1 : (extent + spacing - 1) / spacing * spacing;
+}
+
+/// The replicated samples are used as neighbours, so that a tile of two spacings has an estimate.
 void add_errors(const TileSamples& tile, ErrorSum& sum) {
   const auto level = tile.level();
   if (!level) return;
   const int spacing = level->spacing_px();
   const PixelRect& rect = tile.rect();
+  const int last_x = last_sample(rect.width, spacing);
+  const int last_y = last_sample(rect.height, spacing);
   for (int y = 0; y < rect.height; y += spacing) {
-    for (int x = spacing; x + spacing < rect.width; x += 2 * spacing) {
+    for (int x = spacing; x + spacing <= last_x; x += 2 * spacing) {
       sum.add(tile.at(x - spacing, y), tile.at(x, y), tile.at(x + spacing, y));
     }
   }
-  for (int y = spacing; y + spacing < rect.height; y += 2 * spacing) {
+  for (int y = spacing; y + spacing <= last_y; y += 2 * spacing) {
     for (int x = 0; x < rect.width; x += spacing) {
       sum.add(tile.at(x, y - spacing), tile.at(x, y), tile.at(x, y + spacing));
     }

@@ -6,11 +6,6 @@ namespace {
 
 std::size_t index_of(Level level) { return static_cast<std::size_t>(level.log2_spacing); }
 
-bool in_range(Level level) {
-  return level.log2_spacing >= kPixelLevel.log2_spacing &&
-         level.log2_spacing <= kNoLevel.log2_spacing;
-}
-
 }  // namespace
 
 TileSamples::TileSamples(PixelRect rect) : rect_(rect) {
@@ -32,13 +27,14 @@ std::optional<Level> TileSamples::level() const {
 }
 
 bool TileSamples::place(Level from, Level to, std::span<const Sample> samples) {
-  if (!in_range(from) || !in_range(to) || to.log2_spacing >= from.log2_spacing) return false;
+  if (!is_step(from, to)) return false;
   const auto offsets = new_samples({rect_.width, rect_.height}, from, to);
   if (offsets.size() != samples.size()) return false;
   for (std::size_t i = 0; i < offsets.size(); ++i) {
     samples_[static_cast<std::size_t>(offsets[i].y * stride_ + offsets[i].x)] = samples[i];
   }
-  steps_[index_of(from)] = to;
+  auto& step = steps_[index_of(from)];
+  if (!step || to.log2_spacing < step->log2_spacing) step = to;
   return true;
 }
 

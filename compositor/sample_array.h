@@ -14,7 +14,8 @@
 
 namespace goldthread {
 
-/// One tile's samples: (width + 1) × (height + 1) places, rows from the top.
+/// One tile's samples: a place for each pixel and for the replicated samples at or beyond the right
+/// and lower edges, rows from the top.
 class TileSamples {
  public:
   explicit TileSamples(PixelRect rect);
@@ -36,7 +37,7 @@ class TileSamples {
   PixelRect rect_;
   int stride_ = 0;
   std::vector<Sample> samples_;
-  /// steps_[f] is the level that a quantum from level f brought, by binary logarithm.
+  /// steps_[f] is the finest level that a quantum from level f brought, by binary logarithm.
   std::array<std::optional<Level>, kNoLevel.log2_spacing + 1> steps_;
 };
 

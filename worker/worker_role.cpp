@@ -2,7 +2,6 @@
 #include "worker/worker_role.h"
 
 #include <exception>
-#include <new>
 #include <string>
 #include <utility>
 
@@ -20,16 +19,16 @@ constexpr std::chrono::milliseconds kIdleWait{50};
 constexpr std::chrono::seconds kFarewell{2};
 constexpr std::chrono::milliseconds kLoadingWait{20};
 
-/// What no function foresaw: memory that is not there, above all.
-Failure failure_of(std::string where, const std::exception& error) {
-  const bool memory = dynamic_cast<const std::bad_alloc*>(&error) != nullptr;
-  return {std::move(where), memory ? "there is not enough memory" : error.what(),
-          memory ? "free memory on this host" : "please report this", ExitStatus::kClusterFailed};
-}
-
 }  // namespace
 
 WorkerRole::WorkerRole(Transport& transport) : post_(transport) {}
+
+void WorkerRole::require(bool good, const char* what) const {
+  if (good) return;
+  throw FatalError({"rank " + std::to_string(post_.rank().value), what,
+                    "start the same build of goldthread on every host",
+                    ExitStatus::kClusterFailed});
+}
 
 bool WorkerRole::run() {
   post_.to_master(Hello{kProtocolVersion, GOLDTHREAD_VERSION, Role::kWorker, host_name(),
@@ -38,14 +37,13 @@ bool WorkerRole::run() {
     try {
       while (auto message = post_.receive<ToWorker>()) {
         std::visit([&](auto& value) { on(std::move(value)); }, message->second);
+        heartbeat_.beat(post_);  // also when messages never end
       }
       finish_loading();
       send_done();
       heartbeat_.beat(post_);
-    } catch (const FatalError& error) {
-      post_.to_master(RankFailed{error.failure()});
     } catch (const std::exception& error) {
-      post_.to_master(RankFailed{failure_of("rank " + std::to_string(post_.rank().value), error)});
+      post_.tell_failure(error);
     }
     if (!stop_) post_.wait(loading_ ? kLoadingWait : kIdleWait);
   }
@@ -54,6 +52,7 @@ bool WorkerRole::run() {
 }
 
 void WorkerRole::on(BeginSession message) {
+  require(message.threads > 0 && message.compositors > 0, "was given a session without ranks");
   session_ = message;
   pool_ =
       std::make_unique<ComputePool>(message.threads, message.interactive, [this] { post_.wake(); });
@@ -72,8 +71,6 @@ void WorkerRole::on(const LoadVolume& message) {
       OwnedBlock block = make_shared_block(bytes);
       fill_block(loaded->info, loaded->voxels(), {block.memory.get(), bytes});
       return LoadedBlock{std::move(loaded->info), block.share, std::move(block.memory)};
-    } catch (const FatalError& error) {
-      return error.failure();
     } catch (const std::exception& error) {
       return failure_of(message.file, error);
     }
@@ -99,12 +96,15 @@ void WorkerRole::finish_loading() {
 }
 
 void WorkerRole::on(MapVolume message) {
+  require(message.block.bytes == Volume::block_bytes(message.info.geometry, message.info.type),
+          "was given a volume of another size than its block");
   auto memory = map_shared_block(message.block);
   volume_ = std::make_shared<const Volume>(std::move(message.info), std::move(memory));
   post_.to_master(VolumeMapped{});
 }
 
 void WorkerRole::on(const CommitScene& message) {
+  require(volume_ != nullptr, "was given a scene before its volume");
   const Scene scene = value_or_throw(
       parse_scene(message.scene_json, "the master's scene", {}, {.allow_internal = true}));
   scene_ = commit_scene(scene, volume_);
@@ -113,10 +113,8 @@ void WorkerRole::on(const CommitScene& message) {
 }
 
 void WorkerRole::on(const BeginView& message) {
-  if (!message.grid.valid() || message.scene_revision != revision_) {
-    throw FatalError({"rank " + std::to_string(post_.rank().value),
-                      "was given a view it cannot cast", "", ExitStatus::kClusterFailed});
-  }
+  require(pool_ && scene_ && message.grid.valid() && message.scene_revision == revision_,
+          "was given a view it cannot cast");
   view_ = message;
   pool_->begin_view(std::make_shared<const CastView>(CastView{
       message.epoch, message.grid, make_ray_caster(scene_, message.camera, message.grid.image)}));
@@ -124,7 +122,8 @@ void WorkerRole::on(const BeginView& message) {
 
 void WorkerRole::on(const RenderTile& message) {
   if (!view_ || message.epoch != view_->epoch) return;
-  if (message.tile.value >= view_->grid.count()) return;
+  require(message.tile.value < view_->grid.count() && is_step(message.from, message.to),
+          "was given a tile or level that its view does not have");
   pool_->push(message);
 }
 

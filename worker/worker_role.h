@@ -31,6 +31,8 @@ class WorkerRole {
   void on(const RenderTile& message);
   void on(const ReportCounters& message);
   void on(const Stop& message);
+  /// Throws FatalError unless what the master sent makes sense.
+  void require(bool good, const char* what) const;
   void send_done();
   void finish_loading();
 

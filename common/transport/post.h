@@ -4,12 +4,21 @@
 
 #include <exception>
 #include <map>
+#include <new>
 #include <string>
 
 #include "common/protocol/wire.h"
 #include "common/transport/transport.h"
 
 namespace goldthread {
+
+/// What an exception says to the user; one that no function foresaw is blamed on `where`.
+inline Failure failure_of(const std::string& where, const std::exception& error) {
+  if (const auto* fatal = dynamic_cast<const FatalError*>(&error)) return fatal->failure();
+  const bool memory = dynamic_cast<const std::bad_alloc*>(&error) != nullptr;
+  return {where, memory ? "there is not enough memory" : error.what(),
+          memory ? "free memory on this host" : "please report this", ExitStatus::kClusterFailed};
+}
 
 /// A rank's post office, and its place in the cluster.
 class Post {
@@ -45,13 +54,7 @@ class Post {
 
   /// Tells the master of an exception that this rank cannot mend, which ends the job.
   void tell_failure(const std::exception& error) {
-    if (const auto* fatal = dynamic_cast<const FatalError*>(&error)) {
-      to_master(RankFailed{fatal->failure()});
-    } else {
-      to_master(
-          RankFailed{{"rank " + std::to_string(rank().value), error.what(),
-                      "free memory on its host, or report this", ExitStatus::kClusterFailed}});
-    }
+    to_master(RankFailed{failure_of("rank " + std::to_string(rank().value), error)});
   }
 
   std::vector<MessageCount> sent() const {
