@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "common/image/display.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+#include <random>
+
+#include "common/image/color.h"
+
+namespace goldthread {
+namespace {
+
+std::uint8_t shown(float value, ColorSpace space) {
+  const float rgba[4]{value, value, value, 1};
+  const auto rgb = display_rgb8(rgba, space);
+  EXPECT_EQ(rgb.size(), 3u);
+  EXPECT_EQ(rgb[0], rgb[1]);
+  EXPECT_EQ(rgb[1], rgb[2]);
+  return rgb[0];
+}
+
+TEST(Display, KeepsTheOrderOfPixelsAndChannelsAndDropsAlpha) {
+  const float rgba[8]{0, 0.2f, 0.4f, 0.9f, 0.6f, 0.8f, 1, 0};
+  EXPECT_EQ(display_rgb8(rgba, ColorSpace::kDisplay),
+            (std::vector<std::uint8_t>{0, 51, 102, 153, 204, 255}));
+  EXPECT_TRUE(display_rgb8({}, ColorSpace::kDisplay).empty());
+}
+
+TEST(Display, GivesEach8BitValueBack) {
+  for (int level = 0; level < 256; ++level) {
+    EXPECT_EQ(shown(static_cast<float>(level) / 255, ColorSpace::kDisplay), level);
+    const double linear = linear_from_srgb(level / 255.0);
+    EXPECT_EQ(shown(static_cast<float>(linear), ColorSpace::kLinear), level);
+  }
+}
+
+TEST(Display, RoundsToTheNearest) {
+  std::mt19937 random(1);
+  for (int i = 0; i < 100000; ++i) {
+    const float value = std::uniform_real_distribution<float>(-0.1f, 1.1f)(random);
+    const double exact = 255 * std::min(1.0, std::max(0.0, static_cast<double>(value)));
+    // Half a level, and what a float's rounding may add to it.
+    ASSERT_LE(std::abs(shown(value, ColorSpace::kDisplay) - exact), 0.5 + 2e-5) << value;
+  }
+}
+
+TEST(Display, ClampsWhatIsOutsideAndShowsNanAsBlack) {
+  const float infinity = std::numeric_limits<float>::infinity();
+  for (const ColorSpace space : {ColorSpace::kDisplay, ColorSpace::kLinear}) {
+    EXPECT_EQ(shown(-1, space), 0);
+    EXPECT_EQ(shown(-infinity, space), 0);
+    EXPECT_EQ(shown(2, space), 255);
+    EXPECT_EQ(shown(infinity, space), 255);
+    EXPECT_EQ(shown(std::nanf(""), space), 0);
+  }
+}
+
+}  // namespace
+}  // namespace goldthread
