@@ -24,6 +24,8 @@ process.on('exit', () => {
   rmSync(scratch, { recursive: true, force: true });
 });
 
+for (const signal of ['SIGINT', 'SIGTERM']) process.on(signal, () => process.exit(1));
+
 function endGroup(group, signal) {
   try {
     process.kill(-group, signal);
