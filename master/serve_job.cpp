@@ -104,7 +104,12 @@ void ServeJob::on(const ViewerEdit& event) {
 }
 
 void ServeJob::on(const ViewerSize& event) {
-  if (request_.size) return;
+  if (request_.size) {
+    const Failure fixed{"size", "is fixed by --size or by the scene file",
+                        "serve without --size a scene that names no size"};
+    to_pages(Reply{event.viewer, refused_message(event.serial, fixed)});
+    return;
+  }
   scene_.image.size = event.size;
   note_input(event.viewer, event.serial, false);
 }

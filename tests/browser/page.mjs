@@ -54,11 +54,30 @@ export class SessionPage {
     }
   }
 
-  /** At rest: the picture is final and answers the last input of this page. */
+  /** At rest: the picture is final and answers every input of this page that was not refused. */
   rest() {
-    return this.until('a final picture', ({ connection, picture, unanswered, viewer, serial }) =>
-      connection === 'open' && picture?.final && unanswered === 0 &&
-      (serial === 0 || picture.viewer !== viewer || picture.serial === serial), 120);
+    return this.until('a final picture', ({ connection, picture, unanswered }) =>
+      connection === 'open' && picture?.final && unanswered === 0, 120);
+  }
+
+  /** Makes the window this large; what it leaves to the picture, as {width, height} in CSS pixels. */
+  async resize(width, height) {
+    await this.page.setViewportSize({ width, height });
+    return this.stage();
+  }
+
+  stage() {
+    return this.page.evaluate(() => {
+      const { clientWidth: width, clientHeight: height } = document.querySelector('main.stage');
+      return { width, height };
+    });
+  }
+
+  /** At rest, with a picture of this size. */
+  async restAt({ width, height }) {
+    await this.until(`a final picture of ${width} × ${height}`, ({ picture }) =>
+      picture?.final && picture.width === width && picture.height === height, 120);
+    return this.rest();
   }
 
   /** The canvas as {width, height, rgb}. */

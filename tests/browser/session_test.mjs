@@ -139,7 +139,47 @@ if (!mpi) {
     assert.ok(await page.page.getByText(refusal.what).first().isVisible());
     assert.deepEqual((await page.rest()).editable.lights, lights);
   });
+
+  test('An image size that the user of the server fixed stays, and the page is told', async () => {
+    await page.page.locator('summary', { hasText: 'Image' }).click();
+    const choice = page.page.locator('label:has(> span:text-is("Size")) select');
+    await choice.selectOption('512');
+    const { refusal } = await page.until('a refusal', (state) => state.refusal?.where === 'size');
+    assert.match(refusal.what, /fixed/);
+    const state = await page.rest();
+    assert.equal(`${state.size.width}x${state.size.height}`, kSize);
+    assert.equal(await choice.inputValue(), 'keep');
+  });
 }
+
+test('The picture of a scene without a size follows the window', async () => {
+  const open = await serve(headVolume);
+  const window = await SessionPage.open(browser, open.url, { width: 400, height: 400 });
+  await window.restAt(await window.stage());
+  for (const [width, height] of [[480, 360], [300, 420]]) {
+    const stage = await window.resize(width, height);
+    assert.equal(stage.width, width);
+    await window.restAt(stage);
+    await expectOffline(window);
+  }
+
+  if (!mpi) {
+    // Back to the old size before the server has said anything about the new one.
+    const before = await window.state();
+    open.signal('SIGSTOP');
+    await window.resize(320, 440);
+    await window.until('the new size is asked for', ({ serial }) => serial === before.serial + 1, 20);
+    const stage = await window.resize(300, 420);
+    await window.until('the old size is asked for', ({ serial }) => serial === before.serial + 2, 20);
+    open.signal('SIGCONT');
+    await window.until('an answer', ({ unanswered }) => unanswered === 0);
+    await window.restAt(stage);
+  }
+  assert.deepEqual(window.complaints, []);
+  await window.page.close();
+  open.signal('SIGTERM');
+  await open.ended;
+});
 
 test('Nothing was complained about', () => assert.deepEqual(page.complaints, []));
 

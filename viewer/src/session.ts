@@ -46,6 +46,8 @@ export class Session {
   private unsentCamera_ = false;
   private movedCamera_ = false;
   private unsentSize_: { width: number; height: number } | null = null;
+  /** The size that this page asked for last; what the server tells may still be older. */
+  private askedSize_: { width: number; height: number } | null = null;
   private inputTime_ = 0;
   private frame_ = 0;
 
@@ -74,8 +76,9 @@ export class Session {
     return this.drives && this.history_.canRedo;
   }
 
+  /** Inputs that no picture on the canvas answers yet; those that wait to be sent count as one. */
   get unanswered(): number {
-    return this.flow_.unanswered;
+    return this.flow_.unanswered + (this.hasUnsent() ? 1 : 0);
   }
 
   get serial(): number {
@@ -116,8 +119,9 @@ export class Session {
   }
 
   askSize(width: number, height: number): void {
-    if (!this.drives || (width === this.size.width && height === this.size.height)) return;
-    this.unsentSize_ = { width, height };
+    const newest = this.askedSize_ ?? this.size;
+    if (!this.drives || (width === newest.width && height === newest.height)) return;
+    this.askedSize_ = this.unsentSize_ = { width, height };
     this.schedule(performance.now());
   }
 
@@ -193,6 +197,7 @@ export class Session {
     this.unsentCamera_ = false;
     this.movedCamera_ = false;
     this.unsentSize_ = null;
+    this.askedSize_ = null;
     this.edits?.drop();
   }
 
@@ -225,6 +230,7 @@ export class Session {
       }
       case 'refused': {
         this.flow_.refused(message.serial);
+        this.askedSize_ = this.unsentSize_;
         const { where, what, mend } = message;
         if (!this.connected) this.failed = { where, what, mend };
         this.refusal = { control: this.edits?.refuse(message.serial) ?? '', where, what, mend };

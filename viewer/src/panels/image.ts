@@ -48,6 +48,10 @@ export function imagePanel(session: Session, stage: HTMLElement): HTMLElement {
       if (drove) ask();
     }
     if (topic === 'camera' || topic === 'picture') now.textContent = `${session.size.width} × ${session.size.height} pixels`;
+    if (topic === 'refused' && session.refusal?.where === 'size') {
+      choice = 'keep';
+      size.show(choice);
+    }
     if (topic === 'scene' && session.editable) {
       background.show(session.editable.background);
       step.show(session.editable.step);
