@@ -35,7 +35,7 @@ Cluster::Cluster(Transport& transport, Topology topology, ClusterOptions options
 
 void Cluster::check_interrupted() const {
   if (!options_.interrupted()) return;
-  throw FatalError(
+  throw Interrupted(
       {"goldthread", "was interrupted", "nothing was written", ExitStatus::kClusterFailed});
 }
 

@@ -12,6 +12,7 @@
 #include <variant>
 #include <vector>
 
+#include "common/base/result.h"
 #include "common/protocol/topology.h"
 #include "common/scene/scene.h"
 #include "common/transport/post.h"
@@ -23,10 +24,16 @@ namespace goldthread {
 
 using Clock = std::chrono::steady_clock;
 
+/// The user ended the job while it waited for other ranks.
+class Interrupted : public FatalError {
+ public:
+  using FatalError::FatalError;
+};
+
 struct ClusterOptions {
   int threads = 0;           ///< per worker; 0: the cores of its node / the workers on it
   bool interactive = false;  ///< compute threads give way to everything else
-  /// Asked while waiting for other ranks; true ends the job with a FatalError.
+  /// Asked while waiting for other ranks; true ends the job with Interrupted.
   std::function<bool()> interrupted = [] { return false; };
 };
 

@@ -47,6 +47,9 @@ RoleEnd run_master(Transport& transport, Topology topology, const Options& optio
   try {
     cluster.greet();
     serve ? run_serve(cluster, options) : run_render(cluster, options);
+  } catch (const Interrupted& error) {
+    // That is how a session ends, at any time.
+    if (!serve) end.failure = error.failure();
   } catch (const FatalError& error) {
     end.failure = error.failure();
   } catch (const std::exception& error) {

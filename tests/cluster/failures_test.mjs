@@ -3,7 +3,7 @@
 // Arguments: "process", or "mpi".
 
 import assert from 'node:assert/strict';
-import { existsSync, mkdirSync, readdirSync, truncateSync, writeFileSync } from 'node:fs';
+import { existsSync, mkdirSync, readdirSync, rmSync, statSync, truncateSync, writeFileSync } from 'node:fs';
 import { createServer } from 'node:net';
 import { once } from 'node:events';
 import test from 'node:test';
@@ -165,6 +165,21 @@ for (const signal of ['SIGINT', 'SIGTERM']) {
     assert.deepEqual(errorLines(result), []);
     if (!mpi) assert.equal(result.status, 0, result.stderr);
     assert.deepEqual(leftOver(), []);
+  });
+  test(`${signal} ends a session that still reads its volume`, async () => {
+    const large = inScratch('large.nrrd');
+    writeFileSync(large, 'NRRD0004\ntype: uint8\ndimension: 3\nsizes: 512 512 512\nencoding: raw\n\n');
+    const header = statSync(large).size;
+    truncateSync(large, header + 512 ** 3);
+    const session = startAll(['serve', large, '--port', '0', '--size', '64x64']);
+    await session.until(() => session.stdout.includes('http://'));
+    session.signal(signal);
+    const result = await session.ended;
+    assert.doesNotMatch(result.stderr, /values 0/, 'it was read already');
+    assert.deepEqual(errorLines(result), []);
+    if (!mpi) assert.equal(result.status, 0, result.stderr);
+    assert.deepEqual(leftOver(), []);
+    rmSync(large);
   });
   test(`${signal} ends a render, which writes nothing`, async () => {
     // Far more than can be done before the signal comes.
