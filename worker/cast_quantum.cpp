@@ -6,14 +6,6 @@
 #include <vector>
 
 namespace goldthread {
-namespace {
-
-/// Rays between two looks at whether the work is still wanted: some ten packets, under a
-/// millisecond.
-constexpr std::size_t kBatch = 256;
-
-}  // namespace
-
 std::optional<CastQuantum> cast_quantum(const SampleSource& source, const TileGrid& grid,
                                         const RenderTile& quantum,
                                         const std::function<bool()>& stale) {
@@ -27,9 +19,9 @@ std::optional<CastQuantum> cast_quantum(const SampleSource& source, const TileGr
   result.samples = {quantum.epoch, quantum.tile, quantum.from, quantum.to,
                     Buffer(offsets.size() * sizeof(Sample))};
   const std::span samples(reinterpret_cast<Sample*>(result.samples.colors.data()), offsets.size());
-  for (std::size_t first = 0; first < positions.size(); first += kBatch) {
+  for (std::size_t first = 0; first < positions.size(); first += kBatchRaysOfQuantum) {
     if (stale()) return {};
-    const std::size_t count = std::min(kBatch, positions.size() - first);
+    const std::size_t count = std::min(kBatchRaysOfQuantum, positions.size() - first);
     result.counts +=
         source.cast(std::span(positions).subspan(first, count), samples.subspan(first, count));
   }

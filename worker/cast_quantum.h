@@ -11,6 +11,10 @@
 
 namespace goldthread {
 
+/// Rays between two looks at whether the work is still wanted: some tens of packets, about a
+/// millisecond.
+constexpr std::size_t kBatchRaysOfQuantum = 512;
+
 struct CastQuantum {
   Samples samples;  ///< ready to be sent
   CastCounts counts;

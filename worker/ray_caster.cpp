@@ -38,7 +38,8 @@ class CommittedScene {
     const TransferFunction* function = nullptr;
     if ((features_.dvr || features_.mip) && material.transfer_function) {
       function = &*material.transfer_function;
-      rows_.emplace(*function, info, volume_->value_bias(), features_.mip ? 1.0 : ambient);
+      rows_.emplace(*function, info, volume_->value_bias(), features_.mip ? 1.0 : ambient,
+                    terms_.step_mm);
       terms_.transfer = rows_->view();
     }
     commit_cells(features_.dvr ? function : nullptr, material);
@@ -62,7 +63,8 @@ class CommittedScene {
     const glm::ivec3 counts = volume_->cell_counts();
     const auto surfaces =
         features_.isosurfaces ? std::span(material.isosurfaces) : std::span<const Isosurface>();
-    const CellVisibility visible(function, surfaces, volume_->value_bias());
+    const double margin = rows_ ? rows_->row_distance() : 0;
+    const CellVisibility visible(function, surfaces, volume_->value_bias(), margin);
     distances_ = distances_to_visible(volume_->cells(), counts, visible);
     terms_.cells = {{counts.x, counts.y, counts.z}, distances_.data(), volume_->cells().data()};
   }

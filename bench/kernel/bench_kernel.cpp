@@ -17,6 +17,7 @@
 #include <thread>
 #include <vector>
 
+#include "common/tile/tile_grid.h"
 #include "common/volume/build_volume.h"
 #include "common/volume/volume_io.h"
 #include "worker/ray_caster.h"
@@ -76,14 +77,14 @@ Scene default_scene(const VolumeGeometry& geometry, const Options& options) {
   return scene;
 }
 
-// Positions tile by tile; a tile is kTile × kTile of them, in rows.
+// Positions tile by tile; a tile is kTile × kTile of them, in blocks of 4 × 4 as workers cast them.
 std::vector<PixelPosition> tiled_positions(int size) {
   std::vector<PixelPosition> positions;
   for (int ty = 0; ty < size; ty += kTile)
     for (int tx = 0; tx < size; tx += kTile)
-      for (int y = ty; y < std::min(ty + kTile, size); ++y)
-        for (int x = tx; x < std::min(tx + kTile, size); ++x)
-          positions.push_back({float(x) + 0.5F, float(y) + 0.5F});
+      for (const SampleOffset offset : new_samples(
+               {std::min(kTile, size - tx), std::min(kTile, size - ty)}, kNoLevel, kPixelLevel))
+        positions.push_back(position_of({tx, ty, kTile, kTile}, offset));
   return positions;
 }
 

@@ -48,7 +48,8 @@ struct Light {
   bool operator==(const Light&) const = default;
 };
 
-/// Phong's coefficients, two-sided: colour × (ambient + Σ I·diffuse·|n·l|) + Σ I·specular·|r·v|^shininess.
+/// Phong's coefficients, two-sided: colour × (ambient + Σ I·diffuse·|n·l|) + Σ
+/// I·specular·|r·v|^shininess.
 struct Shading {
   double ambient = 0.2;
   double diffuse = 0.7;
@@ -71,8 +72,8 @@ struct OpacityNode {
 /// Colour and opacity over data values: independent nodes in ascending order of value, joined
 /// linearly, constant outside. Two nodes of equal value make a step; the later one holds at it.
 struct TransferFunction {
-  double unit_distance_mm = 1;     ///< opacity is reached over this length
-  std::vector<ColorNode> color;    ///< at least one
+  double unit_distance_mm = 1;       ///< opacity is reached over this length
+  std::vector<ColorNode> color;      ///< at least one
   std::vector<OpacityNode> opacity;  ///< at least one, unless it is still to be chosen
   bool color_spans_range = false;    ///< node values are 0…1 of the data's range until resolved
   bool opacity_spans_range = false;  ///< the same, for opacity
@@ -96,10 +97,10 @@ enum class ColorSpace : std::uint8_t { kDisplay, kLinear };
 
 struct SceneVolume {
   std::string name;
-  std::filesystem::path file;          ///< absolute, or relative to the working directory
-  std::optional<int> component;        ///< of a multi-component file
+  std::filesystem::path file;    ///< absolute, or relative to the working directory
+  std::optional<int> component;  ///< of a multi-component file
   Mode mode = Mode::kDvr;
-  std::optional<Shading> shading;      ///< absent: unlit, no gradient is ever computed
+  std::optional<Shading> shading;  ///< absent: unlit, no gradient is ever computed
   std::optional<TransferFunction> transfer_function;  ///< absent: chosen from the histogram
   std::vector<Isosurface> isosurfaces;
   bool operator==(const SceneVolume&) const = default;

@@ -13,6 +13,8 @@ template <class... Kinds>
 struct Visitor : Kinds... {
   using Kinds::operator()...;
 };
+template <class... Kinds>
+Visitor(Kinds...) -> Visitor<Kinds...>;  // clang before 17 does not deduce it
 
 Json json_of(const glm::dvec3& v) { return Json::array({v.x, v.y, v.z}); }
 

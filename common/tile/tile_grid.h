@@ -59,9 +59,10 @@ struct TileGrid {
 };
 
 /// The samples that take a tile of `size` pixels from level `from` (kNoLevel: from nothing) to the
-/// finer level `to` (is_step(from, to)), each once, in the one order in which they travel: in blocks of 4×4, for the
-/// sake of coherent packets. Above the pixel level they include the replicated column and row at or
-/// beyond the right and lower edges, so that each tile can be reconstructed alone.
+/// finer level `to` (is_step(from, to)), each once, in the one order in which they travel: in
+/// blocks of 4×4, for the sake of coherent packets. Above the pixel level they include the
+/// replicated column and row at or beyond the right and lower edges, so that each tile can be
+/// reconstructed alone.
 std::vector<SampleOffset> new_samples(ImageSize size, Level from, Level to);
 
 /// The centre of the pixel that a sample stands for.

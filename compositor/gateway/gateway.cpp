@@ -43,7 +43,10 @@ void check_message(const std::string& json) {
 class Gateway::Impl {
  public:
   explicit Impl(const GatewayOptions& options)
-      : hub_(options.limits, options.on_event), io_(1), server_(io_, options, hub_), farewell_(io_) {
+      : hub_(options.limits, options.on_event),
+        io_(1),
+        server_(io_, options, hub_),
+        farewell_(io_) {
     server_.start();
     thread_ = std::thread([this] { io_.run(); });
   }

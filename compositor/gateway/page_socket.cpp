@@ -84,14 +84,14 @@ void PageSocket::pull() {
   std::visit([this](const auto& known) { write(known); }, outgoing_);
 }
 
-void PageSocket::write(TextFrame frame) {
+void PageSocket::write(const TextFrame& frame) {
   stream_.text(true);
   stream_.async_write(
       asio::buffer(*frame.text),
       [self = shared_from_this()](ErrorCode error, std::size_t) { self->on_written(error); });
 }
 
-void PageSocket::write(RegionFrame frame) {
+void PageSocket::write(const RegionFrame& frame) {
   stream_.binary(true);
   const std::array<asio::const_buffer, 2> parts{
       asio::buffer(frame.picture->headers[frame.region]),
@@ -101,7 +101,7 @@ void PageSocket::write(RegionFrame frame) {
   });
 }
 
-void PageSocket::write(CloseFrame frame) {
+void PageSocket::write(const CloseFrame& frame) {
   closing_ = true;
   drop_after(hub_.limits().handshake);
   const websocket::close_reason reason(static_cast<websocket::close_code>(frame.code),

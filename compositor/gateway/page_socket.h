@@ -33,9 +33,9 @@ class PageSocket : public std::enable_shared_from_this<PageSocket> {
   void read();
   void on_read(ErrorCode error);
   void pull();
-  void write(TextFrame frame);
-  void write(RegionFrame frame);
-  void write(CloseFrame frame);
+  void write(const TextFrame& frame);
+  void write(const RegionFrame& frame);
+  void write(const CloseFrame& frame);
   void on_written(ErrorCode error);
   void drop_after(std::chrono::milliseconds time);
   void drop();

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "worker/compute_pool.h"
+#include "worker/cast_quantum.h"
 
 #include <gtest/gtest.h>
 
@@ -14,7 +15,7 @@ namespace {
 
 const TileGrid kGrid = TileGrid::squares({256, 256}, 64);
 /// Batches of a whole tile at the pixel level.
-constexpr int kBatchesOfATile = 64 * 64 / 256;
+constexpr int kBatchesOfATile = 64 * 64 / int(kBatchRaysOfQuantum);
 
 std::shared_ptr<const CastView> view(std::uint32_t epoch,
                                      std::shared_ptr<const SampleSource> source) {
@@ -150,14 +151,17 @@ TEST(ComputePool, TellsOnceOfAThreadThatFailedAndGoesOn) {
 TEST(ComputePool, HoldsWhenViewsChangeWhileManyThreadsCast) {
   constexpr std::uint32_t kViews = 200;
   NotifyingPool pool(6);
+  std::set<TileId> tiles;  // of the last view
   for (std::uint32_t epoch = 1; epoch <= kViews; ++epoch) {
     pool.pool.begin_view(view(epoch, std::make_shared<CountingSource>()));
     for (std::uint32_t i = 0; i < kGrid.count(); ++i) {
       pool.pool.push({{epoch}, {i}, kNoLevel, kCoarsestLevel});
     }
-    for (const auto& done : pool.pool.take_done()) EXPECT_EQ(done.samples.epoch, Epoch{epoch});
+    for (const auto& done : pool.pool.take_done()) {
+      EXPECT_EQ(done.samples.epoch, Epoch{epoch});
+      if (epoch == kViews) tiles.insert(done.samples.tile);
+    }
   }
-  std::set<TileId> tiles;
   while (tiles.size() < kGrid.count()) {
     pool.notified.acquire();
     for (const auto& done : pool.pool.take_done()) {

@@ -31,21 +31,42 @@ HWY_NOINLINE CastCounts cast(const CastArguments& arguments) {
   using FieldType = Field<kStorage, kAddressing>;
   CastCounts counts;
   counts.rays = arguments.positions.size();
-  for (std::size_t begin = 0; begin < arguments.positions.size(); begin += kLanes) {
-    const std::size_t count = std::min(kLanes, arguments.positions.size() - begin);
-    RayArrays arrays;
-    set_up_rays(arguments.scene, arguments.view, arguments.positions.data() + begin, count, arrays);
-    const Rays rays(arrays);
+  RayBatch batch;
+  for (std::size_t begin = 0; begin < arguments.positions.size(); begin += kBatchRays) {
+    const std::size_t count = std::min(kBatchRays, arguments.positions.size() - begin);
+    set_up_rays(arguments.scene, arguments.view, arguments.positions.data() + begin, count, batch);
     Sample* samples = arguments.samples.data() + begin;
-    // The packet must not leave this function, not even into a lambda: it lives in registers.
+    // Packets must not leave this function, not even into a lambda: they live in registers.
     if constexpr (kFeatures.mip) {
-      GreatestValue<FieldType> packet(arguments, rays);
-      counts.samples += packet.run();
-      write_samples(packet.color(), packet.alpha(), samples, count);
+      for (std::size_t i = 0; i < count; i += kLanes) {
+        const Rays rays(batch, i);
+        GreatestValue<FieldType> packet(arguments, rays);
+        counts.samples += packet.run();
+        write_samples(packet.color(), packet.alpha(), samples + i, std::min(kLanes, count - i));
+      }
     } else {
-      RayMarch<FieldType, kFeatures> packet(arguments, rays);
-      counts.samples += packet.run();
-      write_samples(packet.color(), packet.alpha(), samples, count);
+      RayQueue queue(batch, samples, count);
+      using Packet = RayMarch<FieldType, kFeatures>;
+      Packet packet(arguments);
+      if constexpr (kFeatures.isosurfaces) {
+        while (packet.prepare(queue)) {
+          do packet.step();
+          while (packet.may_go_on());
+        }
+      } else {
+        Packet other(arguments);
+        // Both, also where the first has work.
+        while (static_cast<int>(packet.prepare(queue)) | static_cast<int>(other.prepare(queue))) {
+          do {
+            const auto fetched = packet.fetch();
+            const auto other_fetched = other.fetch();
+            packet.step(fetched);
+            other.step(other_fetched);
+          } while (packet.may_go_on() && other.may_go_on());
+        }
+        counts.samples += other.samples();
+      }
+      counts.samples += packet.samples();
     }
   }
   return counts;

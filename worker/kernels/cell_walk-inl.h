@@ -25,7 +25,12 @@ class CellWalk {
 
   HWY_INLINE CellWalk(const KernelScene& scene, const Rays& rays)
       : cells_(scene.cells), size_(scene.field.size), rays_(rays) {
-    reach_ = {reach(rays.direction.x), reach(rays.direction.y), reach(rays.direction.z)};
+    rays_changed();
+  }
+
+  /// To be called when `rays` are others than before.
+  HWY_INLINE void rays_changed() {
+    reach_ = {reach(rays_.direction.x), reach(rays_.direction.y), reach(rays_.direction.z)};
   }
 
   /// The cube around `position`, which is the ray's at `steps`.

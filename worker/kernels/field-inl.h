@@ -57,6 +57,9 @@ HWY_INLINE WideOffset operator+(WideOffset a, WideOffset b) {
 template <Storage kStorage, Addressing kAddressing>
 class Field {
  public:
+  /// Integers are always finite.
+  static constexpr bool kMayBeInfinite = kStorage == Storage::kFloat32;
+
   explicit Field(const FieldLayout& layout) : layout_(layout) {}
 
   /// A place inside a cell of 2³ voxels.
@@ -85,8 +88,9 @@ class Field {
   HWY_INLINE Words words(const Place& at) const {
     if constexpr (kStorage == Storage::kUInt8) {
       const auto x = part<0>(at.x);
-      const auto y0 = part<1>(at.y) + x, y1 = part<1>(next(at.y)) + x;
-      const auto z0 = part<2>(at.z), z1 = part<2>(next(at.z));
+      const auto y = part<1>(at.y), z0 = part<2>(at.z);
+      const auto y0 = y + x, y1 = next_part<1>(at.y, y) + x;
+      const auto z1 = next_part<2>(at.z, z0);
       return {{word<-1>(y0 + z0), word<-1>(y1 + z0), word<-1>(y0 + z1), word<-1>(y1 + z1)}};
     } else {
       return {{hn::Zero(kInts)}};
@@ -101,8 +105,9 @@ class Field {
         rows[i] = lerp(bits_of<8, 8>(words.row[i]), bits_of<16, 8>(words.row[i]), at.fx);
     } else {
       const auto x = part<0>(at.x);
-      const auto y0 = part<1>(at.y) + x, y1 = part<1>(next(at.y)) + x;
-      const auto z0 = part<2>(at.z), z1 = part<2>(next(at.z));
+      const auto y = part<1>(at.y), z0 = part<2>(at.z);
+      const auto y0 = y + x, y1 = next_part<1>(at.y, y) + x;
+      const auto z1 = next_part<2>(at.z, z0);
       rows[0] = along_x(y0 + z0, at.fx), rows[1] = along_x(y1 + z0, at.fx);
       rows[2] = along_x(y0 + z1, at.fx), rows[3] = along_x(y1 + z1, at.fx);
     }
@@ -114,8 +119,9 @@ class Field {
   /// border's voxel is repeated. Equal voxels give exactly 0.
   HWY_INLINE Floats3 gradient(const Place& at, const Words& words) const {
     const auto x = part<0>(at.x);
-    const auto y = part<1>(at.y) + x, y_next = part<1>(next(at.y)) + x;
-    const auto z = part<2>(at.z), z_next = part<2>(next(at.z));
+    const auto y_part = part<1>(at.y), z = part<2>(at.z);
+    const auto y = y_part + x, y_next = next_part<1>(at.y, y_part) + x;
+    const auto z_next = next_part<2>(at.z, z);
     const Row r00 = row(word_of(words, 0), y + z, at.fx);
     const Row r10 = row(word_of(words, 1), y_next + z, at.fx);
     const Row r01 = row(word_of(words, 2), y + z_next, at.fx);
@@ -143,6 +149,9 @@ class Field {
  private:
   static constexpr int kBytes =
       kStorage == Storage::kUInt8 ? 1 : (kStorage == Storage::kUInt16 ? 2 : 4);
+  /// From one voxel to the next along an axis, inside a brick.
+  static constexpr int kLocalBytes[3] = {kBytes, BrickLayout::kRow* kBytes,
+                                         BrickLayout::kSlice* kBytes};
   static constexpr int kShift[3] = {BrickLayout::kShiftX, BrickLayout::kShiftY,
                                     BrickLayout::kShiftZ};
 
@@ -170,7 +179,7 @@ class Field {
   template <int kAxis>
   HWY_INLINE auto part(Ints coordinate) const {
     const Ints brick = hn::ShiftRight<kShift[kAxis]>(coordinate);
-    const Ints local = hn::Set(kInts, layout_.local_bytes[kAxis]);
+    const Ints local = hn::Set(kInts, kLocalBytes[kAxis]);
     if constexpr (kAddressing == Addressing::kNarrow) {
       const Ints step = hn::Mul(brick, hn::Set(kInts, layout_.step_bytes[kAxis]));
       return NarrowOffset{hn::Add(hn::Mul(coordinate, local), step)};
@@ -179,6 +188,20 @@ class Field {
       return WideOffset{hn::Mul(brick, hn::Set(kInts, layout_.brick_stride[kAxis])),
                         hn::Mul(place, local)};
     }
+  }
+
+  /// part<kAxis>(coordinate + 1), from that of the coordinate.
+  template <int kAxis>
+  HWY_INLINE NarrowOffset next_part(Ints coordinate, NarrowOffset at) const {
+    const Ints last = hn::Set(kInts, (1 << kShift[kAxis]) - 1);
+    const auto crosses = hn::Eq(hn::And(coordinate, last), last);
+    const Ints step = hn::Set(kInts, layout_.step_bytes[kAxis] + kLocalBytes[kAxis]);
+    const Ints inside = hn::Set(kInts, kLocalBytes[kAxis]);
+    return {hn::Add(at.bytes, hn::IfThenElse(crosses, step, inside))};
+  }
+  template <int kAxis>
+  HWY_INLINE WideOffset next_part(Ints coordinate, WideOffset) const {
+    return part<kAxis>(next(coordinate));
   }
 
   /// 32 bits that start `elements` voxels right of the row's place.

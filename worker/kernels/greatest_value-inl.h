@@ -40,7 +40,7 @@ class GreatestValue {
       do {
         const Segment segment = segment_of(rays_, index_);
         consider(active, middle(segment.begin, segment.end));
-        index_ = hn::IfThenElse(active, hn::Add(index_, hn::Set(kFloats, 1.0F)), index_);
+        index_ = hn::Add(index_, hn::Set(kFloats, 1.0F));
         active = hn::And(active, hn::Lt(index_, rays_.segments));
         unsure = hn::And(active, hn::Ge(index_, known_until_));
       } while (hn::AllFalse(kFloats, unsure) && !hn::AllFalse(kFloats, active));

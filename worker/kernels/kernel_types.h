@@ -19,8 +19,8 @@ struct FieldLayout {
   const std::uint8_t* voxels = nullptr;
   std::int32_t size[3] = {0, 0, 0};  ///< voxels, each at least 2
   float upper[3] = {0, 0, 0};        ///< the greatest float below size − 1: positions end here
-  /// Byte offset = Σ coordinate·local + (coordinate >> shift)·step; void in a volume ≥ 2 GiB.
-  std::int32_t local_bytes[3] = {0, 0, 0};
+  /// Byte offset = Σ coordinate·local + (coordinate >> shift)·step, local that of BrickLayout
+  /// inside a brick; void in a volume ≥ 2 GiB.
   std::int32_t step_bytes[3] = {0, 0, 0};
   std::int32_t brick_stride[3] = {0, 0, 0};  ///< bricks to the next one along each axis
 };
@@ -33,10 +33,23 @@ struct CellGrid {
   const CellRange* ranges = nullptr;
 };
 
+/// Colour over value as straight segments, few enough to be kept in registers: segment i holds from
+/// start[i] to start[i+1]; before the first and behind the last its end's colour.
+struct ColorSegments {
+  static constexpr int kMost = 16;
+  int count = 0;  ///< 0: there are more; the table has the colours too
+  float start[kMost] = {};
+  float color[3][kMost] = {};  ///< at start
+  float slope[3][kMost] = {};  ///< per value
+};
+
 /// The transfer function as rows of red, green, blue and extinction (1/mm) at equal distances of
 /// value, joined linearly.
 struct TransferTable {
   const float* rows = nullptr;
+  const float* extinctions = nullptr;  ///< of the rows, once more by themselves
+  const float* opacities = nullptr;  ///< of a segment of full length: 1 − e^(−extinction·step)
+  ColorSegments colors;
   float first_value = 0;
   float rows_per_value = 0;
   float last_row = 1;  ///< index of the last row, at least 1
@@ -96,8 +109,9 @@ struct CastArguments {
   std::span<Sample> samples;  ///< as many as positions
 };
 
-/// A ray ends where less than this share of what lies behind could still be seen; the error of a
-/// colour channel is below it, 0.063/255.
-constexpr float kLeastTransmittance = 1.0F / 4096;
+/// A ray ends where less than this share of what lies behind could still be seen. What it has met
+/// then stands for the rest: its colour is divided by its opacity, so that a colour channel is off
+/// by less than this times the difference of the two, and opacity by less than this, 0.25/255.
+constexpr float kLeastTransmittance = 1.0F / 1024;
 
 }  // namespace goldthread

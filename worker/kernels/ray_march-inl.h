@@ -14,6 +14,7 @@
 #include "worker/kernels/cell_walk-inl.h"
 #include "worker/kernels/field-inl.h"
 #include "worker/kernels/ray_packet-inl.h"
+#include "worker/kernels/ray_queue-inl.h"
 #include "worker/kernels/shading-inl.h"
 #include "worker/kernels/transfer-inl.h"
 
@@ -23,36 +24,150 @@ namespace goldthread::HWY_NAMESPACE {
 template <class FieldType, Features kFeatures>
 class RayMarch {
  public:
-  HWY_INLINE RayMarch(const CastArguments& arguments, const Rays& rays)
+  HWY_INLINE explicit RayMarch(const CastArguments& arguments)
       : scene_(arguments.scene),
         lights_(arguments.view.lights),
         field_(arguments.scene.field),
-        rays_(rays),
-        walk_(arguments.scene, rays),
-        step_mm_(hn::Set(kFloats, float(arguments.scene.step_mm))) {}
+        rays_(lanes_.rays, 0),
+        walk_(arguments.scene, rays_),
+        step_mm_(float(arguments.scene.step_mm)) {}
 
-  /// Casts the packet; returns how many field values were taken for results.
-  HWY_INLINE std::uint64_t run() {
-    FloatMask active = hn::Gt(rays_.segments, hn::Zero(kFloats));
+  /// Gives free lanes new rays and takes each lane to its next segment that may show something.
+  /// False once neither the packet nor the queue has a ray left; then all results are handed over.
+  HWY_INLINE bool prepare(RayQueue& queue) {
     while (true) {
-      active = advance(active);
-      if (hn::AllFalse(kFloats, active)) return samples_;
-      // Until a lane leaves what it knows about, all sample.
-      FloatMask unsure;
-      do {
-        sample(active);
-        index_ = hn::IfThenElse(active, hn::Add(index_, hn::Set(kFloats, 1.0F)), index_);
-        active = hn::And(active, hn::Lt(index_, rays_.segments));
-        active = hn::And(active, hn::Gt(transmittance_, hn::Set(kFloats, kLeastTransmittance)));
-        unsure = hn::And(active, hn::Ge(index_, known_until_));
-      } while (hn::AllFalse(kFloats, unsure) && !hn::AllFalse(kFloats, active));
+      const std::size_t busy = hn::CountTrue(kFloats, active_);
+      const bool drained = queue.empty();
+      if (busy == 0 && drained && !holds_results_) return false;
+      if (busy == 0 || (!drained && busy <= kLanes - kRefill)) refill(queue);
+      active_ = advance(active_);
+      running_ = hn::CountTrue(kFloats, active_);
+      if (running_ > 0) return true;
     }
   }
 
-  HWY_INLINE const Floats3& color() const { return color_; }
-  HWY_INLINE Floats alpha() const { return alpha_; }
+  /// What a sample needs of the field. Fetched for two packets before either goes on, so that one's
+  /// arithmetic hides the other's waiting for memory.
+  struct Fetched {
+    Floats3 position;
+    typename FieldType::Place place;
+    typename FieldType::Words words;
+    Floats steps;  ///< how long the segment is
+  };
+  HWY_INLINE Fetched fetch() const {
+    const Segment segment = segment_of(rays_, index_);
+    return fetch(segment.begin, segment.end);
+  }
+
+  /// One segment of each lane, its field fetched before.
+  HWY_INLINE void step(const Fetched& fetched) {
+    add_interval(active_, fetched);
+    finish_segment();
+  }
+  /// The same with all its work at once; surfaces need more of the field than can be told before.
+  HWY_INLINE void step() {
+    sample_between_surfaces(active_, segment_of(rays_, index_));
+    finish_segment();
+  }
+
+  /// Whether the next step may follow without prepare().
+  HWY_INLINE bool may_go_on() const {
+    if (running_ == 0) return true;  // nothing to do: no reason to stop another packet
+    const FloatMask unsure = hn::And(active_, hn::Ge(index_, known_until_));
+    const std::size_t left = hn::CountTrue(kFloats, active_);
+    return left > 0 && left + kRefill > running_ && !must_look(unsure, left);
+  }
+
+  /// Field values taken for results.
+  HWY_INLINE std::uint64_t samples() const { return samples_; }
 
  private:
+  /// A packet takes new rays when this many of its lanes have none.
+  static constexpr std::size_t kRefill = kLanes >= 4 ? kLanes / 4 : 1;
+
+  /// What a lane owns, in memory, while lanes are given to other rays.
+  struct alignas(64) Lanes {
+    RayLanes rays = {};
+    float index[kLanes] = {}, known_until[kLanes] = {}, value[kLanes] = {}, stale[kLanes] = {};
+    float alpha[kLanes] = {}, color[3][kLanes] = {};
+    Sample* place[kLanes] = {};  ///< null: the lane has no ray
+  };
+
+  /// Whether lanes that have left what they know about must look around now. Emission and
+  /// absorption may as well sample what turns out to be empty: it adds exactly 0. So they wait for
+  /// company.
+  static HWY_INLINE bool must_look(FloatMask unsure, std::size_t active) {
+    if constexpr (kFeatures.isosurfaces) return !hn::AllFalse(kFloats, unsure);
+    return 2 * hn::CountTrue(kFloats, unsure) >= active;
+  }
+
+  HWY_INLINE void hand_over(std::size_t lane) {
+    const float alpha = lanes_.alpha[lane];
+    const bool opaque = 1.0F - alpha <= kLeastTransmittance;
+    const float share = opaque ? 1.0F / alpha : 1.0F;
+    *lanes_.place[lane] = {lanes_.color[0][lane] * share, lanes_.color[1][lane] * share,
+                           lanes_.color[2][lane] * share, opaque ? 1.0F : alpha};
+  }
+
+  HWY_INLINE void finish_segment() {
+    // Of all lanes: were it of the active ones, the next sample's address would wait for this one's
+    // opacity.
+    index_ = hn::Add(index_, hn::Set(kFloats, 1.0F));
+    active_ = hn::And(active_, hn::Lt(index_, rays_.segments));
+    active_ = hn::And(active_, hn::Gt(transmittance_, hn::Set(kFloats, kLeastTransmittance)));
+  }
+
+  /// Hands over the results of the lanes that are not active and gives them the next rays.
+  HWY_INLINE void refill(RayQueue& queue) {
+    HWY_ALIGN float running[kLanes];
+    hn::Store(hn::IfThenElseZero(active_, hn::Set(kFloats, 1.0F)), kFloats, running);
+    store_lanes();
+    holds_results_ = false;
+    for (std::size_t i = 0; i < kLanes; ++i) {
+      if (running[i] == 0) {
+        if (lanes_.place[i] != nullptr) {
+          hand_over(i);
+        }
+        lanes_.place[i] = queue.empty() ? nullptr : queue.take(lanes_.rays, i);
+        running[i] = lanes_.place[i] != nullptr ? 1.0F : 0.0F;
+        lanes_.index[i] = lanes_.known_until[i] = lanes_.value[i] = lanes_.alpha[i] = 0;
+        lanes_.color[0][i] = lanes_.color[1][i] = lanes_.color[2][i] = 0;
+        lanes_.stale[i] = 1;
+      }
+      holds_results_ = holds_results_ || lanes_.place[i] != nullptr;
+    }
+    load_lanes();
+    active_ = hn::Gt(hn::Load(kFloats, running), hn::Zero(kFloats));
+  }
+
+  HWY_INLINE void store_lanes() {
+    hn::Store(index_, kFloats, lanes_.index);
+    hn::Store(known_until_, kFloats, lanes_.known_until);
+    hn::Store(alpha_, kFloats, lanes_.alpha);
+    hn::Store(color_.x, kFloats, lanes_.color[0]);
+    hn::Store(color_.y, kFloats, lanes_.color[1]);
+    hn::Store(color_.z, kFloats, lanes_.color[2]);
+    if constexpr (kFeatures.isosurfaces) {
+      hn::Store(value_, kFloats, lanes_.value);
+      hn::Store(hn::IfThenElseZero(value_is_stale_, hn::Set(kFloats, 1.0F)), kFloats, lanes_.stale);
+    }
+  }
+
+  HWY_INLINE void load_lanes() {
+    rays_ = Rays(lanes_.rays, 0);
+    walk_.rays_changed();
+    index_ = hn::Load(kFloats, lanes_.index);
+    known_until_ = hn::Load(kFloats, lanes_.known_until);
+    alpha_ = hn::Load(kFloats, lanes_.alpha);
+    transmittance_ = hn::Sub(hn::Set(kFloats, 1.0F), alpha_);
+    color_ = {hn::Load(kFloats, lanes_.color[0]), hn::Load(kFloats, lanes_.color[1]),
+              hn::Load(kFloats, lanes_.color[2])};
+    if constexpr (kFeatures.isosurfaces) {
+      value_ = hn::Load(kFloats, lanes_.value);
+      value_is_stale_ = hn::Gt(hn::Load(kFloats, lanes_.stale), hn::Zero(kFloats));
+    }
+  }
+
   /// Takes each lane that needs it to its next segment that may show something.
   HWY_INLINE FloatMask advance(FloatMask active) {
     FloatMask unsure = hn::And(active, hn::Ge(index_, known_until_));
@@ -86,37 +201,35 @@ class RayMarch {
     return active;
   }
 
-  HWY_INLINE void sample(FloatMask active) {
-    const Segment segment = segment_of(rays_, index_);
-    if constexpr (kFeatures.isosurfaces) {
-      sample_between_surfaces(active, segment);
-    } else {
-      add_interval(active, segment.begin, segment.end);
-    }
-  }
-
   HWY_INLINE Floats value_at(Floats steps) const {
     return field_.value(field_.locate(rays_.at(steps, scene_.field.upper)));
   }
 
-  /// Emission and absorption of [begin, end], from the field in its middle.
-  HWY_INLINE void add_interval(FloatMask active, Floats begin, Floats end) {
+  /// The field in the middle of [begin, end].
+  HWY_INLINE Fetched fetch(Floats begin, Floats end) const {
     const Floats3 position = rays_.at(middle(begin, end), scene_.field.upper);
     const auto place = field_.locate(position);
-    const auto words = field_.words(place);
-    const Floats value = field_.value(place, words);
+    return {position, place, field_.words(place), hn::Sub(end, begin)};
+  }
+
+  /// Emission and absorption of an interval, from the field in its middle.
+  HWY_INLINE void add_interval(FloatMask active, const Fetched& fetched) {
+    const Floats value = field_.value(fetched.place, fetched.words);
     samples_ += hn::CountTrue(kFloats, active);
-    const FloatMask seen = hn::And(active, is_finite(value));
-    const Optics optics = look_up(scene_.transfer, hn::IfThenElseZero(seen, value));
-    const Floats length = hn::Mul(hn::Sub(end, begin), step_mm_);
-    const Floats depth = hn::IfThenElseZero(seen, hn::Mul(optics.extinction, length));
-    if (hn::AllFalse(kFloats, hn::Gt(depth, hn::Zero(kFloats)))) return;
-    Floats3 color = optics.color;
+    FloatMask seen = active;
+    if constexpr (FieldType::kMayBeInfinite) seen = hn::And(active, is_finite(value));
+    const Floats usable = hn::IfThenElseZero(seen, value);
+    const Floats opacity =
+        hn::IfThenElseZero(seen, opacity_of(scene_.transfer, usable, fetched.steps, step_mm_));
+    if (hn::AllFalse(kFloats, hn::Gt(opacity, hn::Zero(kFloats)))) return;
+    Floats3 color = has_segments(scene_.transfer)
+                        ? color_in_segments(scene_.transfer.colors, usable)
+                        : look_up(scene_.transfer, usable).color;
     if constexpr (kFeatures.shading) {
-      color =
-          shade(scene_.phong, lights_, color, field_.gradient(place, words), position, rays_.direction);
+      color = shade(scene_.phong, lights_, color, field_.gradient(fetched.place, fetched.words),
+                    fetched.position, rays_.direction);
     }
-    composite(color, one_minus_exp(depth));
+    composite(color, opacity);
   }
 
   HWY_INLINE void composite(const Floats3& color, Floats opacity) {
@@ -155,11 +268,11 @@ class RayMarch {
       const Floats at = hn::Max(from, refine(segment, hn::Sub(value_, isovalue),
                                              hn::Sub(next_value, isovalue), isovalue));
       const Floats until = hn::IfThenElse(hit, at, from);
-      if constexpr (kFeatures.dvr) add_interval(hit, from, until);
+      if constexpr (kFeatures.dvr) add_interval(hit, fetch(from, until));
       add_surface(hit, until, rising, up, down);
       from = until;
     }
-    if constexpr (kFeatures.dvr) add_interval(active, from, segment.end);
+    if constexpr (kFeatures.dvr) add_interval(active, fetch(from, segment.end));
     value_ = hn::IfThenElse(active, next_value, value_);
   }
 
@@ -208,9 +321,10 @@ class RayMarch {
   const KernelScene& scene_;
   const std::vector<LightTerm>& lights_;
   FieldType field_;
-  const Rays& rays_;
+  Lanes lanes_;
+  Rays rays_;
   CellWalk walk_;
-  Floats step_mm_;
+  float step_mm_;
 
   Floats index_ = hn::Zero(kFloats);        ///< the segment that comes next
   Floats known_until_ = hn::Zero(kFloats);  ///< from this segment on the cells must be asked
@@ -220,6 +334,9 @@ class RayMarch {
   Floats value_ = hn::Zero(kFloats);  ///< of the field where segment index_ begins
   FloatMask value_is_stale_ = hn::MaskFromVec(hn::BitCast(kFloats, hn::Set(kInts, -1)));
   std::uint64_t samples_ = 0;
+  FloatMask active_ = hn::Gt(hn::Zero(kFloats), hn::Zero(kFloats));  ///< lanes whose ray goes on
+  std::size_t running_ = 0;     ///< lanes that were active when the packet was prepared
+  bool holds_results_ = false;  ///< some lane has a ray, maybe ended
 };
 
 }  // namespace goldthread::HWY_NAMESPACE

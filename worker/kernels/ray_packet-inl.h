@@ -22,14 +22,34 @@ namespace goldthread::HWY_NAMESPACE {
 
 constexpr std::size_t kLanes = hn::MaxLanes(FloatTag());
 
+/// Rays that are set up together.
+constexpr std::size_t kBatchRays = 512;
+static_assert(kBatchRays % kLanes == 0);
+
 /// Rays as arrays. Lengths along a ray are in steps from the start of its first segment.
-struct alignas(64) RayArrays {
-  float start[3][kLanes];      ///< voxel index where the first segment begins, maybe outside
-  float direction[3][kLanes];  ///< voxel indices per step
-  float first[kLanes];         ///< where the volume begins, in [0, 1]
-  float last[kLanes];          ///< where the volume ends, in (segments − 1, segments]
-  float segments[kLanes];      ///< 0: the volume is missed
+template <std::size_t kCount>
+struct alignas(64) RayColumns {
+  float start[3][kCount];      ///< voxel index where the first segment begins, maybe outside
+  float direction[3][kCount];  ///< voxel indices per step
+  float first[kCount];         ///< where the volume begins, in [0, 1]
+  float last[kCount];          ///< where the volume ends, in (segments − 1, segments]
+  float segments[kCount];      ///< 0: the volume is missed
 };
+using RayBatch = RayColumns<kBatchRays>;
+using RayLanes = RayColumns<kLanes>;
+
+/// Copies one ray.
+template <std::size_t kFrom, std::size_t kTo>
+HWY_INLINE void copy_ray(const RayColumns<kFrom>& from, std::size_t i, RayColumns<kTo>& to,
+                         std::size_t lane) {
+  for (int axis = 0; axis < 3; ++axis) {
+    to.start[axis][lane] = from.start[axis][i];
+    to.direction[axis][lane] = from.direction[axis][i];
+  }
+  to.first[lane] = from.first[i];
+  to.last[lane] = from.last[i];
+  to.segments[lane] = from.segments[i];
+}
 
 /// The part of a ray inside [0, extent] of each axis; empty unless exit > entry.
 struct Span {
@@ -57,10 +77,11 @@ HWY_INLINE Span clip(const double* origin, const double* direction, const float*
   return span;
 }
 
-/// Rays through `count` ≤ kLanes positions; the other lanes miss.
+/// Rays through `count` ≤ kBatchRays positions; up to the next whole packet, the others miss.
 HWY_INLINE void set_up_rays(const KernelScene& scene, const KernelView& view,
-                            const PixelPosition* positions, std::size_t count, RayArrays& rays) {
-  for (std::size_t i = 0; i < kLanes; ++i) {
+                            const PixelPosition* positions, std::size_t count, RayBatch& rays) {
+  const std::size_t padded = (count + kLanes - 1) / kLanes * kLanes;
+  for (std::size_t i = 0; i < padded; ++i) {
     const PixelPosition position = positions[i < count ? i : 0];
     const double u = (double(position.x) - view.centre_x) * view.scale;
     const double v = (view.centre_y - double(position.y)) * view.scale;
@@ -89,14 +110,17 @@ struct Rays {
   Floats3 start, direction;
   Floats first, last, segments;
 
-  explicit HWY_INLINE Rays(const RayArrays& rays)
-      : start{hn::Load(kFloats, rays.start[0]), hn::Load(kFloats, rays.start[1]),
-              hn::Load(kFloats, rays.start[2])},
-        direction{hn::Load(kFloats, rays.direction[0]), hn::Load(kFloats, rays.direction[1]),
-                  hn::Load(kFloats, rays.direction[2])},
-        first(hn::Load(kFloats, rays.first)),
-        last(hn::Load(kFloats, rays.last)),
-        segments(hn::Load(kFloats, rays.segments)) {}
+  /// Those that start at `begin`, a multiple of kLanes.
+  template <std::size_t kCount>
+  HWY_INLINE Rays(const RayColumns<kCount>& rays, std::size_t begin)
+      : start{hn::Load(kFloats, rays.start[0] + begin), hn::Load(kFloats, rays.start[1] + begin),
+              hn::Load(kFloats, rays.start[2] + begin)},
+        direction{hn::Load(kFloats, rays.direction[0] + begin),
+                  hn::Load(kFloats, rays.direction[1] + begin),
+                  hn::Load(kFloats, rays.direction[2] + begin)},
+        first(hn::Load(kFloats, rays.first + begin)),
+        last(hn::Load(kFloats, rays.last + begin)),
+        segments(hn::Load(kFloats, rays.segments + begin)) {}
 
   /// The position after `steps`, never by adding up; rounding is kept from leaving the volume.
   HWY_INLINE Floats3 at(Floats steps, const float* upper) const {

@@ -75,7 +75,6 @@ double step_of(double wanted_mm, const VolumeGeometry& geometry) {
 FieldLayout field_layout_of(const Volume& volume) {
   const BrickLayout& layout = volume.layout();
   const auto bytes = std::int64_t(bytes_per_voxel(volume.info().type));
-  const std::int64_t local[3] = {1, BrickLayout::kRow, BrickLayout::kSlice};
   const glm::i64vec3 step = layout.brick_step();
   const bool narrow = addressing_of(layout, volume.info().type) == Addressing::kNarrow;
   FieldLayout field;
@@ -83,7 +82,6 @@ FieldLayout field_layout_of(const Volume& volume) {
   for (int axis = 0; axis < 3; ++axis) {
     field.size[axis] = layout.size[axis];
     field.upper[axis] = std::nextafter(float(layout.size[axis] - 1), 0.0F);
-    field.local_bytes[axis] = std::int32_t(local[axis] * bytes);
     field.step_bytes[axis] = narrow ? std::int32_t(step[axis] * bytes) : 0;
   }
   field.brick_stride[0] = 1;

@@ -68,14 +68,79 @@ HWY_INLINE Optics interpolated_rows(const float* rows, Ints row, Floats fraction
 }
 #endif
 
-/// `value` must be finite.
-HWY_INLINE Optics look_up(const TransferTable& table, Floats value) {
+/// Between which rows a value lies.
+struct TablePlace {
+  Ints row;
+  Floats fraction;
+};
+HWY_INLINE TablePlace place_in(const TransferTable& table, Floats value) {
   const Floats exact = hn::Mul(hn::Sub(value, hn::Set(kFloats, table.first_value)),
                                hn::Set(kFloats, table.rows_per_value));
   const Floats place = hn::Min(hn::Max(exact, hn::Zero(kFloats)), hn::Set(kFloats, table.last_row));
   const Ints row =
       hn::Min(hn::ConvertTo(kInts, place), hn::Set(kInts, std::int32_t(table.last_row) - 1));
-  return interpolated_rows(table.rows, row, hn::Sub(place, hn::ConvertTo(kFloats, row)));
+  return {row, hn::Sub(place, hn::ConvertTo(kFloats, row))};
+}
+
+/// `value` must be finite.
+HWY_INLINE Optics look_up(const TransferTable& table, Floats value) {
+  const TablePlace place = place_in(table, value);
+  return interpolated_rows(table.rows, place.row, place.fraction);
+}
+
+/// Whether color_in_segments may be called: the segments fit into the lanes of a vector.
+HWY_INLINE bool has_segments(const TransferTable& table) {
+  return table.colors.count > 0 && std::size_t(table.colors.count) <= kLanes;
+}
+
+/// The colour alone, from segments in registers: no memory is touched. `value` must be finite.
+HWY_INLINE Floats3 color_in_segments(const ColorSegments& segments, Floats value) {
+  Ints segment = hn::Zero(kInts);
+  for (int i = 1; i < segments.count; ++i) {
+    const auto behind = hn::RebindMask(kInts, hn::Ge(value, hn::Set(kFloats, segments.start[i])));
+    segment = hn::Add(segment, hn::IfThenElseZero(behind, hn::Set(kInts, 1)));
+  }
+  const auto index = hn::IndicesFromVec(kFloats, segment);
+  const auto of_segment = [&](const float* table) HWY_ATTR {
+    return hn::TableLookupLanes(hn::LoadU(kFloats, table), index);
+  };
+  const Floats way = hn::Max(hn::Sub(value, of_segment(segments.start)), hn::Zero(kFloats));
+  return {hn::MulAdd(way, of_segment(segments.slope[0]), of_segment(segments.color[0])),
+          hn::MulAdd(way, of_segment(segments.slope[1]), of_segment(segments.color[1])),
+          hn::MulAdd(way, of_segment(segments.slope[2]), of_segment(segments.color[2]))};
+}
+
+/// A column of the table alone.
+HWY_INLINE Floats interpolated_column(const float* column, const TablePlace& place) {
+#if HWY_TARGET == HWY_AVX2 || HWY_TARGET == HWY_AVX3
+  // A row and the next one in a gather of 64 bits: half as many loads.
+  constexpr hn::Repartition<std::int64_t, FloatTag> kPairs{};
+  const auto* pairs = reinterpret_cast<const std::int64_t*>(column);
+  const Ints offset = hn::ShiftLeft<2>(place.row);
+  const hn::Half<IntTag> half;
+  const auto low = hn::GatherOffset(kPairs, pairs, hn::PromoteTo(kPairs, hn::LowerHalf(offset)));
+  const auto high =
+      hn::GatherOffset(kPairs, pairs, hn::PromoteTo(kPairs, hn::UpperHalf(half, offset)));
+  const Floats first = hn::BitCast(kFloats, low), second = hn::BitCast(kFloats, high);
+  return lerp(hn::ConcatEven(kFloats, second, first), hn::ConcatOdd(kFloats, second, first),
+              place.fraction);
+#else
+  return lerp(hn::GatherIndex(kFloats, column, place.row),
+              hn::GatherIndex(kFloats, column + 1, place.row), place.fraction);
+#endif
+}
+
+/// Opacity of segments of the given lengths in steps, at most 1. Nearly all are full ones, which
+/// need no exponential.
+HWY_INLINE Floats opacity_of(const TransferTable& table, Floats value, Floats steps,
+                             float step_mm) {
+  const TablePlace place = place_in(table, value);
+  const Floats full = interpolated_column(table.opacities, place);
+  const auto is_part = hn::Lt(steps, hn::Set(kFloats, 1.0F));
+  if (hn::AllFalse(kFloats, is_part)) return full;
+  const Floats extinction = interpolated_column(table.extinctions, place);
+  const Floats depth = hn::Mul(extinction, hn::Mul(steps, hn::Set(kFloats, step_mm)));
+  return hn::IfThenElse(is_part, one_minus_exp(depth), full);
 }
 
 }  // namespace goldthread::HWY_NAMESPACE

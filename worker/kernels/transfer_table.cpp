@@ -50,10 +50,30 @@ double rows_per_value_of(const Domain& domain, const TransferFunction& function,
   return std::max(1.0, std::floor(std::min(rows, kMostRows) / range));
 }
 
+/// The segments between a function's colour nodes, and a constant one behind the last; none if they
+/// are too many.
+ColorSegments segments_of(const std::vector<ColorNode>& nodes, double value_bias, double factor) {
+  ColorSegments segments;
+  if (nodes.size() > std::size_t(ColorSegments::kMost)) return segments;
+  for (std::size_t i = 0; i < nodes.size(); ++i) {
+    const bool last = i + 1 == nodes.size();
+    const double width = last ? 0 : nodes[i + 1].value - nodes[i].value;
+    if (!last && !(width > 0)) continue;  // a step: the later node holds
+    segments.start[segments.count] = float(nodes[i].value - value_bias);
+    for (int c = 0; c < 3; ++c) {
+      const double slope = last ? 0 : (nodes[i + 1].rgb[c] - nodes[i].rgb[c]) / width;
+      segments.color[c][segments.count] = float(nodes[i].rgb[c] * factor);
+      segments.slope[c][segments.count] = float(slope * factor);
+    }
+    ++segments.count;
+  }
+  return segments;
+}
+
 }  // namespace
 
 TransferRows::TransferRows(const TransferFunction& function, const VolumeInfo& info,
-                           double value_bias, double color_factor) {
+                           double value_bias, double color_factor, double step_mm) {
   Domain domain = domain_of(function, info);
   if (info.type != VoxelType::kFloat32) domain = {std::floor(domain.first), std::ceil(domain.last)};
   const double per_value = rows_per_value_of(domain, function, info.type);
@@ -64,14 +84,19 @@ TransferRows::TransferRows(const TransferFunction& function, const VolumeInfo& i
     const double value = domain.first + double(i) / per_value;
     const glm::dvec3 color = function.color_at(value) * color_factor;
     for (int c = 0; c < 3; ++c) rows_.push_back(float(color[c]));
-    rows_.push_back(float(function.extinction_at(value)));
+    const double extinction = function.extinction_at(value);
+    extinctions_.push_back(float(extinction));
+    opacities_.push_back(float(-std::expm1(-extinction * step_mm)));
+    rows_.push_back(extinctions_.back());
   }
+  colors_ = segments_of(function.color, value_bias, color_factor);
   first_value_ = float(domain.first - value_bias);
   rows_per_value_ = float(per_value);
 }
 
 TransferTable TransferRows::view() const {
-  return {rows_.data(), first_value_, rows_per_value_, float(rows_.size() / 4 - 1)};
+  return {rows_.data(), extinctions_.data(), opacities_.data(),          colors_,
+          first_value_, rows_per_value_,     float(rows_.size() / 4 - 1)};
 }
 
 }  // namespace goldthread

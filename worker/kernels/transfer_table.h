@@ -15,14 +15,20 @@ namespace goldthread {
 /// a whole number of rows per value, so that nodes at whole values are exact. Rows are 16 bytes.
 class TransferRows {
  public:
-  /// Colours of `function` are taken as they are, and multiplied by `color_factor`.
+  /// Colours of `function` are taken as they are, and multiplied by `color_factor`; opacities are
+  /// those of a segment of `step_mm`.
   TransferRows(const TransferFunction& function, const VolumeInfo& info, double value_bias,
-               double color_factor);
+               double color_factor, double step_mm = 1);
 
   TransferTable view() const;
+  /// The distance of two rows in data values.
+  double row_distance() const { return 1.0 / rows_per_value_; }
 
  private:
   std::vector<float> rows_;
+  std::vector<float> extinctions_;
+  std::vector<float> opacities_;
+  ColorSegments colors_;
   float first_value_ = 0;
   float rows_per_value_ = 0;
 };

@@ -53,8 +53,9 @@ class ChessboardTransform {
 }  // namespace
 
 CellVisibility::CellVisibility(const TransferFunction* function,
-                               std::span<const Isosurface> isosurfaces, double value_bias)
-    : value_bias_(value_bias) {
+                               std::span<const Isosurface> isosurfaces, double value_bias,
+                               double margin)
+    : value_bias_(value_bias), margin_(margin) {
   if (function != nullptr) nodes_ = function->opacity;
   opaque_before_.push_back(0);
   for (const OpacityNode& node : nodes_)
@@ -69,7 +70,7 @@ bool CellVisibility::operator()(CellRange stored) const {
   const double maximum = double(stored.maximum) + value_bias_;
   const auto surface = std::lower_bound(isovalues_.begin(), isovalues_.end(), minimum);
   if (surface != isovalues_.end() && *surface <= maximum) return true;
-  return !nodes_.empty() && has_extinction(minimum, maximum);
+  return !nodes_.empty() && has_extinction(minimum - margin_, maximum + margin_);
 }
 
 // Opacity is linear between nodes: over an interval it is 0 exactly if it is at all nodes inside

@@ -13,13 +13,15 @@
 
 namespace goldthread {
 
-/// Decides from the opacity nodes themselves, not from a table: a cell is invisible only where
-/// extinction is exactly 0 over its whole range and no isovalue lies in it.
+/// Decides from the opacity nodes themselves: a cell is invisible only where extinction is exactly
+/// 0 over its whole range, widened by a margin, and no isovalue lies in it. With a row of the
+/// transfer table as the margin, sampling an invisible cell gives exactly 0 too, so that it does
+/// not matter whether a ray leaps over it.
 class CellVisibility {
  public:
   /// `function` may be null. Values are data values; ranges given later are stored ones.
   CellVisibility(const TransferFunction* function, std::span<const Isosurface> isosurfaces,
-                 double value_bias);
+                 double value_bias, double margin = 0);
   bool operator()(CellRange stored) const;
 
  private:
@@ -29,6 +31,7 @@ class CellVisibility {
   std::vector<std::size_t> opaque_before_;  ///< nodes with opacity among the first i
   std::vector<double> isovalues_;           ///< ascending
   double value_bias_;
+  double margin_;
 };
 
 /// Chebyshev distances in cells, 0 where visible, at most 255, x fastest; and 3 bytes of padding
