@@ -17,7 +17,6 @@ namespace {
 constexpr std::int64_t kVersion = 1;
 constexpr int kMaxImageEdge = 16384;
 constexpr std::size_t kMaxPathBytes = 4096;
-constexpr Interval kLength{-kMaxLength, kMaxLength};
 constexpr Interval kPositive{1e-9, kMaxLength};
 constexpr Interval kUnit{0, 1};
 constexpr Interval kFactor{0, 1000};

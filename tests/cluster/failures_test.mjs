@@ -164,7 +164,7 @@ for (const signal of ['SIGINT', 'SIGTERM']) {
     const result = await session.ended;
     assert.deepEqual(errorLines(result), []);
     if (!mpi) assert.equal(result.status, 0, result.stderr);
-    assert.deepEqual(leftOver(), []);
+    assert.deepEqual(await leftOver(), []);
   });
   // mpirun passes a signal on when the volume is long read.
   if (!mpi) test(`${signal} ends a session that still reads its volume`, async () => {
@@ -184,7 +184,7 @@ for (const signal of ['SIGINT', 'SIGTERM']) {
     }
     rmSync(large);
     assert.ok(inTime, 'no signal came while the volume was being read');
-    assert.deepEqual(leftOver(), []);
+    assert.deepEqual(await leftOver(), []);
   });
   test(`${signal} ends a render, which writes nothing`, async () => {
     // Far more than can be done before the signal comes.
@@ -200,6 +200,6 @@ for (const signal of ['SIGINT', 'SIGTERM']) {
       assert.equal(result.status, 4);
     }
     assert.ok(!existsSync(inScratch('stopped.png')));
-    assert.deepEqual(leftOver(), []);
+    assert.deepEqual(await leftOver(), []);
   });
 }

@@ -111,8 +111,19 @@ export const runCommand = (command, args, options) => new Running(command, args,
 export const errorLines = (result) =>
   result.stderr.split('\n').filter((line) => line.startsWith('goldthread: error: '));
 
-/** Command lines of the processes that run the program in this test's folder, this one apart. */
-export function leftOver() {
+/** Command lines of the processes that still run the program in this test's folder: a rank that was
+    told to end may finish what it computes, so they have some seconds to go. */
+export async function leftOver() {
+  const end = Date.now() + 15_000;
+  let found = running();
+  while (found.length > 0 && Date.now() < end) {
+    await new Promise((resolve) => setTimeout(resolve, 50));
+    found = running();
+  }
+  return found;
+}
+
+function running() {
   const found = [];
   for (const entry of readdirSync('/proc')) {
     if (!/^\d+$/.test(entry) || Number(entry) === process.pid) continue;
