@@ -88,8 +88,10 @@ std::optional<Direction> decode(Buffer bytes) {
   if (!reader.read(kind) || kind >= std::variant_size_v<Direction>) return {};
   return [&]<std::size_t... Kind>(std::index_sequence<Kind...>) {
     std::optional<Direction> message;
-    ((Kind == kind && (message = wire_detail::decode_kind<Direction, Kind>(reader, bytes), true)) ||
-     ...);
+    static_cast<void>(
+        ((Kind == kind &&
+          (message = wire_detail::decode_kind<Direction, Kind>(reader, bytes), true)) ||
+         ...));
     return message;
   }
   (std::make_index_sequence<std::variant_size_v<Direction>>{});
