@@ -103,7 +103,7 @@ void Cluster::begin_session() {
                                        static_cast<std::uint32_t>(topology_.compositors)});
     ++places;  // the spare tile
   }
-  scheduler_ = Scheduler(std::move(capacity));
+  scheduler_ = Scheduler(capacity);
 }
 
 VolumeInfo Cluster::load_volume(const SceneVolume& volume,

@@ -8,7 +8,7 @@
 
 namespace goldthread {
 
-Scheduler::Scheduler(std::vector<int> capacity) {
+Scheduler::Scheduler(const std::vector<int>& capacity) {
   for (const int places : capacity) workers_.push_back({places, {}});
 }
 

@@ -26,7 +26,7 @@ struct Quantum {
 class Scheduler {
  public:
   /// `capacity[w]`: how many quanta worker w may hold at once, its spare one included.
-  explicit Scheduler(std::vector<int> capacity);
+  explicit Scheduler(const std::vector<int>& capacity);
 
   /// Forgets the old view and everything in flight. Levels run through `levels` (coarse to fine, at
   /// least one); the order within each follows `costs`.
