@@ -39,6 +39,8 @@ HWY_AFTER_NAMESPACE();
 #if HWY_ONCE
 namespace goldthread {
 HWY_EXPORT(cast_unit);
+// Each unit includes this once, under a name of its own.
+// NOLINTNEXTLINE(misc-definitions-in-headers)
 CastCounts KERNEL_UNIT(Features features, const CastArguments& arguments) {
   return HWY_DYNAMIC_DISPATCH(cast_unit)(features, arguments);
 }

@@ -95,8 +95,9 @@ TransferRows::TransferRows(const TransferFunction& function, const VolumeInfo& i
 }
 
 TransferTable TransferRows::view() const {
-  return {rows_.data(), extinctions_.data(), opacities_.data(),          colors_,
-          first_value_, rows_per_value_,     float(rows_.size() / 4 - 1)};
+  const std::size_t last_row = extinctions_.size() - 1;
+  return {rows_.data(), extinctions_.data(), opacities_.data(), colors_,
+          first_value_, rows_per_value_,     float(last_row)};
 }
 
 }  // namespace goldthread
