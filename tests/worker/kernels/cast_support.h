@@ -8,9 +8,9 @@
 #include <memory>
 #include <vector>
 
+#include "bench/reference/reference_integrator.h"
 #include "common/scene/scene.h"
 #include "common/volume/volume.h"
-#include "reference_integrator.h"
 #include "worker/ray_caster.h"
 
 namespace goldthread::test {

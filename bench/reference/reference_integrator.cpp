@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "reference_integrator.h"
+#include "bench/reference/reference_integrator.h"
 
 #include <algorithm>
 #include <array>
