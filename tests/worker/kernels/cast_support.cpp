@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "cast_support.h"
 
+#include <gtest/gtest.h>
+
 #include <algorithm>
 #include <cmath>
 #include <cstring>
@@ -108,13 +110,18 @@ std::vector<PixelPosition> pixel_centres(ImageSize size, int stride) {
   return positions;
 }
 
+Picture cast(const SampleSource& source, const std::vector<PixelPosition>& positions) {
+  Picture picture(positions.size());
+  source.cast(positions, picture);
+  if (!is_sane(picture)) ADD_FAILURE() << "a sample is NaN, infinite, negative or above 1 in alpha";
+  return picture;
+}
+
 Picture cast(const Scene& scene, std::shared_ptr<const Volume> volume,
              const std::vector<PixelPosition>& positions) {
-  const auto source =
-      make_ray_caster(commit_scene(scene, std::move(volume)), *scene.camera, scene.image.size);
-  Picture picture(positions.size());
-  source->cast(positions, picture);
-  return picture;
+  return cast(
+      *make_ray_caster(commit_scene(scene, std::move(volume)), *scene.camera, scene.image.size),
+      positions);
 }
 
 Picture reference_picture(const Scene& scene, const Volume& volume,

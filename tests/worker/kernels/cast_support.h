@@ -36,6 +36,8 @@ Scene ramp_scene(const VolumeInfo& info);
 /// Centres of every `stride`-th pixel, row by row.
 std::vector<PixelPosition> pixel_centres(ImageSize size, int stride = 1);
 
+/// Fails the running test where a sample is not sane.
+Picture cast(const SampleSource& source, const std::vector<PixelPosition>& positions);
 Picture cast(const Scene& scene, std::shared_ptr<const Volume> volume,
              const std::vector<PixelPosition>& positions);
 Picture reference_picture(const Scene& scene, const Volume& volume,
