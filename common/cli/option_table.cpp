@@ -21,13 +21,15 @@ using Outcome = std::optional<BadValue>;
 constexpr std::uint8_t kRenders = command_bit(Command::kRender);
 constexpr std::uint8_t kServes = command_bit(Command::kServe);
 constexpr std::uint8_t kBoth = kRenders | kServes;
-constexpr std::uint8_t kAll = kBoth | command_bit(Command::kInfo);
+constexpr std::uint8_t kBenches = command_bit(Command::kBench);
+constexpr std::uint8_t kAll = kBoth | command_bit(Command::kInfo) | kBenches;
 
 constexpr std::string_view kPicture = "Picture";
 constexpr std::string_view kQuality = "Quality";
 constexpr std::string_view kCluster = "Cluster";
 constexpr std::string_view kSession = "Session";
 constexpr std::string_view kOutput = "Output";
+constexpr std::string_view kMeasuring = "Measuring";
 
 /// The whole text as a number, or nothing.
 template <class Number>
@@ -215,6 +217,23 @@ Outcome apply_schedule(Options& options, const std::string& text) {
                                options.schedule);
 }
 
+/// A flag's text is "1"; its variable may also say "0".
+Outcome read_flag(std::string_view text, bool& value) {
+  return read_choice<bool>(text, {{"1", true}, {"0", false}}, value);
+}
+
+Outcome apply_no_peers(Options& options, const std::string& text) {
+  bool absent = false;
+  Outcome bad = read_flag(text, absent);
+  if (!bad) options.bench.peers = !absent;
+  return bad;
+}
+
+Outcome apply_instruction_sets(Options& options, const std::string& text) {
+  return read_choice<bool>(text, {{"best", false}, {"all", true}},
+                           options.bench.all_instruction_sets);
+}
+
 template <class Text>
 Outcome keep_text(const std::string& text, Text& value) {
   if (text.empty()) return BadValue{"is empty", "give a value"};
@@ -223,15 +242,17 @@ Outcome keep_text(const std::string& text, Text& value) {
 }
 
 constexpr OptionRow kTable[] = {
-    {"output", "-o,--output", "IMAGE", kOutput,
-     "Picture to write: .png .exr .tif .jpg; with --orbit a pattern such as frame%04d.png",
-     kRenders, [](Options& o, const std::string& t) { return keep_text(t, o.output); }},
+    {"output", "-o,--output", "PLACE", kOutput,
+     "Picture to write: .png .exr .tif .jpg; with --orbit a pattern such as frame%04d.png. Of a "
+     "bench the folder for its report",
+     kRenders | kBenches, [](Options& o, const std::string& t) { return keep_text(t, o.output); }},
     {"report", "--report", "FILE", kOutput,
      "JSON: times, rays, samples, estimated error, tiles, bytes", kBoth,
      [](Options& o, const std::string& t) { return keep_text(t, o.report); }},
     {"log-level", "--log-level", "LEVEL", kOutput, "error, warn, info or debug [info]", kAll,
      apply_log_level},
-    {"size", "--size", "WxH", kPicture, "Image size in pixels [the scene's]", kBoth, apply_size},
+    {"size", "--size", "WxH", kPicture, "Image size in pixels [the scene's]", kBoth | kBenches,
+     apply_size},
     {"orbit", "--orbit", "N[,DEGREES]", kPicture,
      "N frames turning DEGREES [360] in all about the target and up", kRenders, apply_orbit},
     {"error", "--error", "E", kQuality, "Stop refining at this estimated RMS error, in 1/255 [0.5]",
@@ -247,7 +268,7 @@ constexpr OptionRow kTable[] = {
     {"workers", "--workers", "N", kCluster, "Worker ranks, single process only [1]", kBoth,
      [](Options& o, const std::string& t) { return read_integer(t, 1, 4096, o.workers); }},
     {"threads", "--threads", "N", kCluster,
-     "Threads per worker [cores of the node / worker ranks on it]", kBoth,
+     "Threads per worker [cores of the node / worker ranks on it]", kBoth | kBenches,
      [](Options& o, const std::string& t) { return read_integer(t, 1, 1024, o.threads); }},
     {"compositors", "--compositors", "N", kCluster, "Compositor ranks [1]", kBoth,
      [](Options& o, const std::string& t) { return read_integer(t, 1, 1024, o.compositors); }},
@@ -264,6 +285,18 @@ constexpr OptionRow kTable[] = {
     {"port", "--port", "P", kSession, "Port to listen on, 0 for any free one [8080]", kServes,
      apply_port},
     {"token", "--token", "T", kSession, "What a page must present [random]", kServes, apply_token},
+    {"repeats", "--repeats", "N", kMeasuring, "Frames of each method [9, or 3 with --quick]",
+     kBenches,
+     [](Options& o, const std::string& t) { return read_integer(t, 1, 1000, o.bench.repeats); }},
+    {"stride", "--stride", "N", kMeasuring,
+     "The reference takes every N-th pixel in both directions [4, or 16 with --quick]", kBenches,
+     [](Options& o, const std::string& t) { return read_integer(t, 1, 64, o.bench.stride); }},
+    {"quick", "--quick", "", kMeasuring, "Fewer steps, frames and pixels", kBenches,
+     [](Options& o, const std::string& t) { return read_flag(t, o.bench.quick); }},
+    {"no-peers", "--no-peers", "", kMeasuring, "Leave VTK and ParaView out", kBenches,
+     apply_no_peers},
+    {"instruction-sets", "--instruction-sets", "WHICH", kMeasuring,
+     "best, or all that this machine has [best]", kBenches, apply_instruction_sets},
 };
 
 }  // namespace

@@ -23,7 +23,7 @@ struct BadValue {
 struct OptionRow {
   std::string_view name;         ///< without dashes: "threads" for --threads and GOLDTHREAD_THREADS
   std::string_view flags;        ///< as CLI11 takes them: "-o,--output"
-  std::string_view placeholder;  ///< of its value, in --help
+  std::string_view placeholder;  ///< of its value, in --help; empty: a flag, whose text is "1"
   std::string_view group;
   std::string_view help;
   std::uint8_t commands;  ///< bits of 1 << Command
@@ -38,7 +38,7 @@ constexpr std::uint8_t command_bit(Command command) {
   return static_cast<std::uint8_t>(1 << static_cast<int>(command));
 }
 
-/// Whether `goldthread bench` will have this subcommand.
+/// Whether `goldthread bench` has this subject, or will have it.
 bool is_bench_subject(std::string_view name);
 /// The words for a feature that is promised and still to come.
 BadValue not_in_this_version(std::string_view what, std::string_view instead);

@@ -31,7 +31,8 @@ constexpr const char* kExamples =
     "  goldthread render scene.json --orbit 120 -o frame%04d.png\n"
     "  goldthread serve scene.json --port 8080\n"
     "  mpirun -n 10 goldthread render scene.json -o scene.png\n"
-    "  goldthread info head.nii.gz\n\n"
+    "  goldthread info head.nii.gz\n"
+    "  goldthread bench error -o measured\n\n"
     "Each option has an environment variable (GOLDTHREAD_THREADS for --threads). An option\n"
     "goes before its variable, that before the scene, the scene before the default.\n\n"
     "A scene file holds at least\n"
@@ -48,6 +49,13 @@ struct Subcommand {
   std::map<std::string_view, std::string> texts = {};  ///< by OptionRow::name
 };
 
+/// A word of the command line that needs no name.
+struct Positional {
+  std::string name;
+  std::string* text;
+  std::string help;
+};
+
 Failure usage(std::string where, std::string what, std::string mend) {
   return {std::move(where), std::move(what), std::move(mend), ExitStatus::kUsage};
 }
@@ -60,12 +68,20 @@ std::string variable_name(std::string_view option) {
 
 /// Declares a subcommand with the options that apply to it.
 void declare(CLI::App& app, Subcommand& sub, const std::string& name, const std::string& help,
-             const std::string& input_name) {
+             const std::vector<Positional>& positionals) {
   sub.app = app.add_subcommand(name, help);
   sub.app->footer(kExamples);
-  sub.app->add_option(input_name, sub.input, "What to read")->type_name("");
+  for (const Positional& each : positionals)
+    sub.app->add_option(each.name, *each.text, each.help)->type_name("");
   for (const OptionRow& row : option_table()) {
     if (!(row.commands & command_bit(sub.command))) continue;
+    if (row.placeholder.empty()) {
+      sub.texts[row.name] = "1";
+      sub.app->add_flag(std::string(row.flags))
+          ->description(std::string(row.help))
+          ->group(std::string(row.group));
+      continue;
+    }
     sub.app->add_option(std::string(row.flags), sub.texts[row.name], std::string(row.help))
         ->type_name(std::string(row.placeholder))
         ->group(std::string(row.group))
@@ -90,7 +106,7 @@ Failure unknown_word(const Subcommand* sub, const std::string& word) {
   }
   if (elsewhere) {
     return usage(name, sub ? "does not apply to " + sub->app->get_name() : "needs a command first",
-                 sub ? "leave it out" : "render, serve or info");
+                 sub ? "leave it out" : "render, serve, bench or info");
   }
   if (word[1] != '-') return usage(name, "unknown option", "see goldthread --help");
   return usage(name, "unknown option",
@@ -122,13 +138,15 @@ std::optional<Failure> apply_options(const Subcommand& sub, const Environment& e
 
 /// What the options mean together.
 std::optional<Failure> check_together(const Options& options) {
-  if (options.input.empty()) {
+  const bool bench = options.command == Command::kBench;
+  if (options.input.empty() && !bench) {
     return usage("command line", "no SCENE is given", "name a scene or volume file");
   }
-  if (options.command != Command::kRender) return {};
+  if (options.command != Command::kRender && !bench) return {};
   if (options.output.empty()) {
-    return usage("--output", "is missing", "say -o image.png");
+    return usage("--output", "is missing", bench ? "say -o FOLDER" : "say -o image.png");
   }
+  if (bench) return {};
   const auto path = image_path(options.output);
   if (!path) return path.failure();
   if (options.orbit && options.orbit->frames > 1) {
@@ -138,18 +156,20 @@ std::optional<Failure> check_together(const Options& options) {
   return {};
 }
 
-Result<CommandLine> bench(const std::vector<std::string>& arguments) {
+/// What a bench is about is its first argument.
+std::optional<Failure> check_bench_subject(const std::vector<std::string>& arguments) {
   const std::string subject = arguments.size() > 1 ? arguments[1] : "";
+  if (subject == "error" || subject == "--help" || subject == "-h") return {};
   if (!is_bench_subject(subject)) {
     return usage("bench", "needs a subject", "error, throughput, balance or scale");
   }
-  const BadValue bad = not_in_this_version("measuring " + subject, "see goldthread --help");
+  const BadValue bad = not_in_this_version("measuring " + subject, "use bench error");
   return usage("bench", bad.what, bad.mend);
 }
 
 Failure bad_command(const std::vector<std::string>& arguments) {
   if (arguments.empty()) {
-    return usage("command line", "no command is given", "render, serve or info; see --help");
+    return usage("command line", "no command is given", "render, serve, bench or info; see --help");
   }
   if (arguments[0].starts_with("-")) return unknown_word(nullptr, arguments[0]);
   return usage(printable(arguments[0]), "unknown command",
@@ -182,13 +202,21 @@ Result<CommandLine> parse_command_line(const std::vector<std::string>& arguments
   app.footer(kExamples);
   app.set_version_flag("--version", std::string("goldthread ") + GOLDTHREAD_VERSION);
   app.require_subcommand(1);
-  std::array<Subcommand, 3> subs{Subcommand{Command::kRender}, Subcommand{Command::kServe},
-                                 Subcommand{Command::kInfo}};
-  declare(app, subs[0], "render", "One image, or a sequence with --orbit", "SCENE");
-  declare(app, subs[1], "serve", "An interactive session in a browser", "SCENE");
-  declare(app, subs[2], "info", "What a volume or scene holds", "FILE");
-  app.add_subcommand("bench", "Measurements: error, throughput, balance, scale (to come)");
-  if (!arguments.empty() && arguments[0] == "bench") return bench(arguments);
+  std::array<Subcommand, 4> subs{Subcommand{Command::kRender}, Subcommand{Command::kServe},
+                                 Subcommand{Command::kInfo}, Subcommand{Command::kBench}};
+  const auto input = [](const char* name, Subcommand& sub) {
+    return std::vector<Positional>{{name, &sub.input, "What to read"}};
+  };
+  declare(app, subs[0], "render", "One image, or a sequence with --orbit", input("SCENE", subs[0]));
+  declare(app, subs[1], "serve", "An interactive session in a browser", input("SCENE", subs[1]));
+  declare(app, subs[2], "info", "What a volume or scene holds", input("FILE", subs[2]));
+  std::string bench_subject;
+  declare(app, subs[3], "bench", "Speed against error, beside other renderers",
+          {{"SUBJECT", &bench_subject, "What to measure: error"},
+           {"SCENE", &subs[3].input, "What to render; absent: the default head"}});
+  if (!arguments.empty() && arguments[0] == "bench") {
+    if (auto failure = check_bench_subject(arguments)) return *failure;
+  }
 
   const Subcommand* chosen = nullptr;
   const auto find_chosen = [&] {
@@ -213,6 +241,7 @@ Result<CommandLine> parse_command_line(const std::vector<std::string>& arguments
   Options options;
   options.command = chosen->command;
   options.input = chosen->input;
+  options.bench.subject = bench_subject;
   if (auto failure = apply_options(*chosen, environment, options)) return *failure;
   if (auto failure = check_together(options)) return *failure;
   return CommandLine(options);

@@ -15,7 +15,7 @@
 
 namespace goldthread {
 
-enum class Command : std::uint8_t { kRender, kServe, kInfo };
+enum class Command : std::uint8_t { kRender, kServe, kInfo, kBench };
 enum class LogLevel : std::uint8_t { kError, kWarn, kInfo, kDebug };
 enum class Schedule : std::uint8_t { kSquares, kRows };
 enum class Sampling : std::uint8_t { kSubdivision, kEveryPixel };
@@ -27,10 +27,20 @@ struct Orbit {
   bool operator==(const Orbit&) const = default;
 };
 
+/// What `bench` alone takes.
+struct BenchOptions {
+  std::string subject;         ///< "error"
+  std::optional<int> repeats;  ///< frames of each method
+  std::optional<int> stride;   ///< the reference takes every stride-th pixel in both directions
+  bool quick = false;          ///< fewer of everything
+  bool peers = true;
+  bool all_instruction_sets = false;
+};
+
 struct Options {
   Command command = Command::kRender;
-  std::string input;   ///< SCENE or FILE
-  std::string output;  ///< render: IMAGE; a pattern with %d if there is an orbit
+  std::string input;   ///< SCENE or FILE; of a bench empty: the default scene
+  std::string output;  ///< render: IMAGE, a pattern with %d if there is an orbit; bench: folder
 
   std::optional<ImageSize> size;  ///< absent: the scene's
   std::optional<double> step_mm;  ///< absent: the scene's
@@ -49,6 +59,8 @@ struct Options {
   std::string host = "127.0.0.1";
   std::uint16_t port = 8080;
   std::optional<std::string> token;  ///< absent: random
+
+  BenchOptions bench;
 
   std::optional<std::string> report;  ///< file to write
   LogLevel log_level = LogLevel::kInfo;

@@ -51,6 +51,8 @@ int run(const Options& options) {
   switch (options.command) {
     case Command::kInfo:
       return run_info(options);
+    case Command::kBench:
+      return speaks() ? run_bench(options) : 0;
     case Command::kRender:
     case Command::kServe:
       return run_cluster(options);

@@ -13,6 +13,9 @@ int run_cluster(const Options& options);
 /// Runs `info`.
 int run_info(const Options& options);
 
+/// Runs `bench`, in this process alone.
+int run_bench(const Options& options);
+
 /// What the master does once all ranks are there.
 class Cluster;
 void run_render(Cluster& cluster, const Options& options);

@@ -131,7 +131,10 @@ TEST(CommandLine, EveryOptionHasItsVariable) {
     for (const char c : row.name) name += c == '-' ? '_' : static_cast<char>(std::toupper(c));
     bool asked = false;
     const bool serves = row.commands & command_bit(Command::kServe);
-    const Words words = serves ? kServe : Words{"render", "s.json"};
+    const bool renders = row.commands & command_bit(Command::kRender);
+    const Words words = serves    ? kServe
+                        : renders ? Words{"render", "s.json"}
+                                  : Words{"bench", "error", "-o", "dir"};
     (void)parse_command_line(words, [&](const std::string& variable) -> std::optional<std::string> {
       asked |= variable == name;
       return {};
@@ -193,7 +196,8 @@ TEST(CommandLine, UnknownOptionsAndCommandsNameTheNearest) {
 }
 
 TEST(CommandLine, WhatIsMissingIsNamed) {
-  EXPECT_EQ(refusal({}), "command line: no command is given (render, serve or info; see --help)");
+  EXPECT_EQ(refusal({}),
+            "command line: no command is given (render, serve, bench or info; see --help)");
   EXPECT_EQ(refusal({"render"}), "command line: no SCENE is given (name a scene or volume file)");
   EXPECT_EQ(refusal({"render", "s.json"}), "--output: is missing (say -o image.png)");
   EXPECT_EQ(refusal(kRender + Words{"--size"}),
@@ -208,7 +212,7 @@ TEST(CommandLine, WhatDoesNotApplyIsNamed) {
   EXPECT_EQ(refusal({"info", "a", "--size", "1x1"}),
             "--size: does not apply to info (leave it out)");
   EXPECT_EQ(refusal({"--threads", "4", "render", "s.json"}),
-            "--threads: needs a command first (render, serve or info)");
+            "--threads: needs a command first (render, serve, bench or info)");
   EXPECT_EQ(refusal({"render", "a", "b", "-o", "c.png"}),
             "b: one input too many (quote a name that has spaces)");
 }
@@ -272,12 +276,47 @@ TEST(CommandLine, WhatIsStillToComeIsRefusedByName) {
             "--bypass: by-passing roles is not in this version (leave --bypass out)");
   EXPECT_EQ(of("--data", "slabs:4"),
             "--data: data in slabs is not in this version (use --data replicated)");
-  for (const std::string subject : {"error", "throughput", "balance", "scale"}) {
+  for (const std::string subject : {"throughput", "balance", "scale"}) {
     EXPECT_EQ(refusal({"bench", subject, "-o", "dir"}),
-              "bench: measuring " + subject + " is not in this version (see goldthread --help)");
+              "bench: measuring " + subject + " is not in this version (use bench error)");
   }
   EXPECT_EQ(refusal({"bench", "x"}),
             "bench: needs a subject (error, throughput, balance or scale)");
+}
+
+TEST(CommandLine, ABenchTakesItsOwnOptionsAndNeedsNoScene) {
+  const Options plain = options({"bench", "error", "-o", "dir"});
+  EXPECT_EQ(plain.command, Command::kBench);
+  EXPECT_EQ(plain.bench.subject, "error");
+  EXPECT_EQ(plain.input, "");
+  EXPECT_EQ(plain.output, "dir");
+  EXPECT_TRUE(plain.bench.peers);
+  EXPECT_FALSE(plain.bench.quick);
+  const Options full =
+      options({"bench", "error", "s.json", "-o", "dir", "--quick", "--no-peers", "--repeats", "5",
+               "--stride", "8", "--instruction-sets", "all", "--size", "64x32", "--threads", "2"});
+  EXPECT_EQ(full.input, "s.json");
+  EXPECT_TRUE(full.bench.quick);
+  EXPECT_FALSE(full.bench.peers);
+  EXPECT_EQ(full.bench.repeats, 5);
+  EXPECT_EQ(full.bench.stride, 8);
+  EXPECT_TRUE(full.bench.all_instruction_sets);
+  EXPECT_EQ(full.size, (ImageSize{64, 32}));
+  EXPECT_EQ(full.threads, 2);
+  EXPECT_EQ(refusal({"bench", "error"}), "--output: is missing (say -o FOLDER)");
+  EXPECT_EQ(refusal({"bench", "error", "a", "b", "-o", "dir"}),
+            "b: one input too many (quote a name that has spaces)");
+  EXPECT_EQ(refusal({"bench", "error", "-o", "dir", "--port", "1"}),
+            "--port: does not apply to bench (leave it out)");
+}
+
+TEST(CommandLine, AFlagsVariableIs1Or0) {
+  const Words bench{"bench", "error", "-o", "dir"};
+  EXPECT_TRUE(options(bench, {{"GOLDTHREAD_QUICK", "1"}}).bench.quick);
+  EXPECT_FALSE(options(bench, {{"GOLDTHREAD_QUICK", "0"}}).bench.quick);
+  EXPECT_FALSE(options(bench, {{"GOLDTHREAD_NO_PEERS", "1"}}).bench.peers);
+  EXPECT_EQ(refusal(bench + Words{"--instruction-sets", "al"}),
+            "--instruction-sets: \"al\" is none of best, all (did you mean \"all\"?)");
 }
 
 TEST(CommandLine, HostileWordsStayOnOneLine) {

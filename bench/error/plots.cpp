@@ -1,0 +1,216 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "bench/error/plots.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <utility>
+
+namespace goldthread::bench {
+namespace {
+
+/// One curve: its points in ascending order of step.
+struct Curve {
+  std::string title;
+  std::string style;
+  std::vector<std::pair<double, double>> points;
+};
+
+/// Okabe and Ito's colours, which colour-blind readers can tell apart.
+const char* color_of(Look look) {
+  switch (look) {
+    case Look::kUnlit:
+      return "#0072B2";
+    case Look::kPhong:
+      return "#D55E00";
+    case Look::kMip:
+      return "#009E73";
+    case Look::kIsosurface:
+      return "#CC79A7";
+  }
+  return "black";
+}
+
+int point_of(Look look) {
+  constexpr int kPoints[] = {7, 5, 9, 13};
+  return kPoints[static_cast<int>(look)];
+}
+
+/// Goldthread's solid and filled, VTK's dashed and open, ParaView's a star.
+std::string style_of(const std::string& program, Look look) {
+  if (program == "Goldthread")
+    return fmt::format("with linespoints lc rgb '{}' lw 1.6 pt {} ps 1", color_of(look),
+                       point_of(look));
+  if (program == "VTK")
+    return fmt::format("with linespoints lc rgb '{}' lw 1.2 dt 2 pt {} ps 1", color_of(look),
+                       point_of(look) - 1);
+  return "with points lc rgb 'black' pt 3 ps 1.6 lw 1.6";
+}
+
+/// Text between gnuplot's single quotes.
+std::string quoted(const std::string& text) {
+  std::string result = "'";
+  for (const char c : text) {
+    if (c == '\'') result += '\'';
+    result += c == '\n' ? ' ' : c;
+  }
+  return result + "'";
+}
+
+using Point = std::pair<double, double> (*)(const MethodRow&);
+
+std::pair<double, double> time_and_error(const MethodRow& row) {
+  return {1e3 * row.seconds.median, row.error.rms};
+}
+std::pair<double, double> step_and_error(const MethodRow& row) {
+  return {row.step_voxels, row.error.rms};
+}
+
+bool is_drawable(const std::pair<double, double>& point) {
+  return point.first > 0 && point.second > 0;
+}
+
+/// A curve for each program and look, through its rows with a step of their own. A program that was
+/// only measured at its default step gets a point, where `with_defaults`.
+std::vector<Curve> curves_of(const Report& report, Point point_from, bool with_defaults) {
+  std::vector<Curve> curves;
+  for (const char* program : {"Goldthread", "VTK", "ParaView"}) {
+    for (const Look look : kLooks) {
+      std::vector<MethodRow> rows;
+      for (const MethodRow& row : report.methods) {
+        const bool shown =
+            row.program == program && row.look == look &&
+            (row.instruction_set.empty() || row.instruction_set == report.instruction_set);
+        const bool placed =
+            row.step_voxels > 0 || (with_defaults && row.program != std::string("Goldthread"));
+        if (shown && placed && is_drawable(point_from(row))) rows.push_back(row);
+      }
+      if (rows.empty()) continue;
+      std::sort(rows.begin(), rows.end(), [](const MethodRow& a, const MethodRow& b) {
+        return a.step_voxels < b.step_voxels;
+      });
+      Curve curve{fmt::format("{}, {}", program, name_of(look)), style_of(program, look), {}};
+      for (const MethodRow& row : rows) curve.points.push_back(point_from(row));
+      curves.push_back(std::move(curve));
+    }
+  }
+  return curves;
+}
+
+/// Rings around what the programs do unasked.
+Curve default_marks(const Report& report) {
+  Curve marks{"Goldthread's default step", "with points lc rgb '#444444' pt 6 ps 2.2 lw 1.2", {}};
+  for (const MethodRow& row : report.methods) {
+    if (row.program == "Goldthread" && row.step_voxels == 0 &&
+        row.instruction_set == report.instruction_set && is_drawable(time_and_error(row)))
+      marks.points.push_back(time_and_error(row));
+  }
+  return marks;
+}
+
+std::string data_blocks(const std::vector<Curve>& curves) {
+  std::string text;
+  for (std::size_t i = 0; i < curves.size(); ++i) {
+    text += fmt::format("$curve{} << END\n", i);
+    for (const auto& [x, y] : curves[i].points) text += fmt::format("{:.9g} {:.9g}\n", x, y);
+    text += "END\n";
+  }
+  return text;
+}
+
+std::string plot_command(const std::vector<Curve>& curves) {
+  std::string text = "plot ";
+  for (std::size_t i = 0; i < curves.size(); ++i)
+    text += fmt::format("{}$curve{} {} title {} noenhanced", i > 0 ? ", \\\n     " : "", i,
+                        curves[i].style, quoted(curves[i].title));
+  return text + "\n";
+}
+
+/// Everything twice: as SVG and as PNG.
+std::string on_both_terminals(const std::string& name, const std::string& command) {
+  return fmt::format(
+      "set terminal svg size 880,560 font 'sans,13' linewidth 1.3 background 'white'\n"
+      "set output '{0}.svg'\n{1}"
+      "set terminal pngcairo size 1760,1120 font 'sans,24' linewidth 2.6 pointscale 1.8\n"
+      "set output '{0}.png'\n{1}"
+      "unset output\n",
+      name, command);
+}
+
+constexpr const char* kFrame =
+    "set encoding utf8\n"
+    "set border 3 lc rgb '#444444'\n"
+    "set tics nomirror out textcolor rgb '#222222'\n"
+    "set grid xtics ytics lc rgb '#dddddd' lw 0.6\n"
+    "set key outside right center Left reverse samplen 2 spacing 1.25\n";
+
+constexpr const char* kLogLog =
+    "set logscale xy\n"
+    "set format y '%g'\n"
+    "set ylabel 'RMS error in 1/255'\n";
+
+std::string subtitle_of(const Report& report) {
+  return fmt::format("{}×{} pixels, {} threads, {}", report.size.width, report.size.height,
+                     report.threads, report.instruction_set);
+}
+
+std::string titled(const std::string& title, const Report& report) {
+  return "set title " + quoted(title + " (" + subtitle_of(report) + ")") + " noenhanced\n";
+}
+
+std::string error_time(const Report& report) {
+  std::vector<Curve> curves = curves_of(report, time_and_error, true);
+  if (curves.empty()) return {};
+  if (Curve marks = default_marks(report); !marks.points.empty()) curves.push_back(marks);
+  return kFrame + std::string(kLogLog) + titled("Error against time", report) +
+         "set format x '%g'\nset xlabel 'median time of a frame in ms'\n" + data_blocks(curves) +
+         on_both_terminals("error-time", plot_command(curves));
+}
+
+std::string error_step(const Report& report) {
+  std::vector<Curve> curves = curves_of(report, step_and_error, false);
+  if (curves.empty()) return {};
+  const auto [step, error] = curves.front().points.back();
+  Curve guide{"second order", "with lines lc rgb '#888888' dt 3 lw 1.4", {}};
+  for (const double h : {1.0, 1 / 16.0}) guide.points.emplace_back(step * h, 1.6 * error * h * h);
+  curves.push_back(guide);
+  return kFrame + std::string(kLogLog) + titled("Error against step", report) +
+         "set xtics (0.0625, 0.125, 0.25, 0.5, 1, 2, 4)\nset xlabel 'step in voxels'\n" +
+         data_blocks(curves) + on_both_terminals("error-step", plot_command(curves));
+}
+
+/// A group of bars for each instruction set: the bare loop, and the looks at their default step.
+std::string samples_per_second(const Report& report) {
+  if (report.gathers.empty()) return {};
+  std::string data = "$bars << END\n\"\" \"bare gather and lerp\" unlit Phong mip isosurface\n";
+  for (const GatherRow& gather : report.gathers) {
+    data +=
+        fmt::format("\"{}\" {:.6g}", gather.instruction_set, 1e-6 * gather.samples_per_second());
+    for (const Look look : kLooks) {
+      const MethodRow* row = report.find("Goldthread", look, 0, gather.instruction_set);
+      data += fmt::format(" {:.6g}", row ? 1e-6 * row->samples_per_second() : 0.0);
+    }
+    data += "\n";
+  }
+  std::string command = "plot ";
+  for (int column = 2; column <= 6; ++column)
+    command += fmt::format("{}$bars using {}:xtic(1) title columnheader lc rgb '{}'",
+                           column > 2 ? ", \\\n     " : "", column,
+                           column == 2 ? "#999999" : color_of(kLooks[std::size_t(column - 3)]));
+  return kFrame + titled("Samples per second", report) +
+         "set style data histograms\nset style histogram clustered gap 1.5\n"
+         "set style fill solid 0.9 noborder\nset boxwidth 0.92\nset yrange [0:*]\n"
+         "unset grid\nset grid ytics lc rgb '#dddddd' lw 0.6\n"
+         "set ylabel 'million samples per second'\n" +
+         data + "END\n" + on_both_terminals("samples-per-second", command + "\n");
+}
+
+}  // namespace
+
+std::vector<Plot> plots_of(const Report& report) {
+  return {{"error-time", error_time(report)},
+          {"error-step", error_step(report)},
+          {"samples-per-second", samples_per_second(report)}};
+}
+
+}  // namespace goldthread::bench

@@ -1,0 +1,82 @@
+// SPDX-License-Identifier: Apache-2.0
+// `goldthread bench`: measurements of this machine, to a folder and to stdout.
+
+#include <spdlog/spdlog.h>
+
+#include <cstdio>
+#include <filesystem>
+#include <memory>
+
+#include "bench/error/bench_error.h"
+#include "common/base/cores.h"
+#include "common/image/whole_file.h"
+#include "common/scene/scene_file.h"
+#include "master/main/program.h"
+#include "master/main/progress.h"
+
+namespace goldthread {
+namespace {
+
+/// The folder, made where it is missing; whether it takes a report is found before the work.
+std::filesystem::path report_folder(const std::string& name) {
+  const std::filesystem::path folder = std::filesystem::absolute(name);
+  std::error_code error;
+  std::filesystem::create_directories(folder, error);
+  if (error) {
+    throw FatalError({name, "cannot be made: " + error.message(), "choose another folder with -o",
+                      ExitStatus::kClusterFailed});
+  }
+  expect_writable(folder / "report.json");
+  return folder;
+}
+
+bench::Subject subject_of(const Options& options) {
+  const bool is_default = options.input.empty();
+  Scene scene = is_default ? bench::default_scene() : value_or_throw(read_scene(options.input));
+  if (options.size) scene.image.size = *options.size;
+  return value_or_throw(bench::load_subject(std::move(scene), is_default));
+}
+
+/// A bar, or lines, for each thing that is done.
+class Phases {
+ public:
+  void update(const std::string& what, double fraction) {
+    if (what != what_) progress_ = std::make_unique<Progress>(what);
+    what_ = what;
+    progress_->update(fraction);
+  }
+  void end() { progress_.reset(); }
+
+ private:
+  std::string what_;
+  std::unique_ptr<Progress> progress_;
+};
+
+}  // namespace
+
+int run_bench(const Options& options) {
+  bench::ErrorBenchSettings settings;
+  settings.folder = report_folder(options.output);
+  settings.program = std::filesystem::read_symlink("/proc/self/exe");
+  settings.scene_name = options.input.empty() ? "default head" : options.input;
+  settings.threads = options.threads.value_or(static_cast<int>(usable_cores()));
+  settings.quick = options.bench.quick;
+  settings.repeats = options.bench.repeats.value_or(settings.quick ? 3 : 9);
+  settings.stride = options.bench.stride.value_or(settings.quick ? 16 : 4);
+  settings.peers = options.bench.peers;
+  settings.all_instruction_sets = options.bench.all_instruction_sets;
+  Phases phases;
+  settings.progress = [&](const std::string& what, double fraction) {
+    phases.update(what, fraction);
+  };
+
+  const bench::Subject subject = subject_of(options);
+  bench::Report report = bench::run_error_bench(subject, settings);
+  phases.end();
+  bench::write_report(report, settings.folder);
+  std::fputs(bench::report_text(report).c_str(), stdout);
+  spdlog::info("bench: report.json, report.md and plots are in {}", settings.folder.string());
+  return 0;
+}
+
+}  // namespace goldthread
