@@ -12,13 +12,12 @@
 #include "worker/kernels/scene_terms.h"
 #include "worker/kernels/transfer_table.h"
 #include "worker/kernels/visible_cells.h"
-#include "worker/kernels/wide_commit.h"
 
 namespace goldthread {
 
 class CommittedScene {
  public:
-  CommittedScene(const Scene& scene, std::shared_ptr<const Volume> volume, Addressing addressing)
+  CommittedScene(const Scene& scene, std::shared_ptr<const Volume> volume)
       : volume_(std::move(volume)), lights_(scene.lights) {
     const VolumeInfo& info = volume_->info();
     const SceneVolume material = in_computing_space(scene.volumes.front(), scene.image.color_space);
@@ -43,7 +42,7 @@ class CommittedScene {
       terms_.transfer = rows_->view();
     }
     commit_cells(features_.dvr ? function : nullptr, material);
-    kernel_ = find_kernel(features_, storage_of(info.type), addressing);
+    kernel_ = find_kernel(features_, storage_of(info.type));
   }
 
   CommittedScene(const CommittedScene&) = delete;
@@ -65,7 +64,7 @@ class CommittedScene {
         features_.isosurfaces ? std::span(material.isosurfaces) : std::span<const Isosurface>();
     const double margin = rows_ ? rows_->row_distance() : 0;
     const CellVisibility visible(function, surfaces, volume_->value_bias(), margin);
-    distances_ = distances_to_visible(volume_->cells(), counts, visible);
+    distances_ = cell_distances(volume_->cells(), counts, visible);
     terms_.cells = {{counts.x, counts.y, counts.z}, distances_.data(), volume_->cells().data()};
   }
 
@@ -110,15 +109,8 @@ class RayCaster final : public SampleSource {
 }  // namespace
 
 std::shared_ptr<const CommittedScene> commit_scene(const Scene& scene,
-                                                   std::shared_ptr<const Volume> volume,
-                                                   Addressing addressing) {
-  return std::make_shared<const CommittedScene>(scene, std::move(volume), addressing);
-}
-
-std::shared_ptr<const CommittedScene> commit_scene(const Scene& scene,
                                                    std::shared_ptr<const Volume> volume) {
-  const Addressing addressing = addressing_of(volume->layout(), volume->info().type);
-  return commit_scene(scene, std::move(volume), addressing);
+  return std::make_shared<const CommittedScene>(scene, std::move(volume));
 }
 
 std::vector<std::string> feature_names(const CommittedScene& scene) {
@@ -130,7 +122,6 @@ std::string kernel_name(const CommittedScene& scene) {
   for (const std::string& feature : feature_names(scene))
     name += (name.empty() ? "" : "+") + feature;
   name += std::string(" ") + name_of(scene.volume().info().type);
-  if (scene.kernel().addressing == Addressing::kWide) name += " wide";
   return name + " " + instruction_set();
 }
 

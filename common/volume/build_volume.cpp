@@ -6,6 +6,8 @@
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
+#include <array>
+#include <bit>
 #include <cassert>
 #include <cmath>
 #include <cstring>
@@ -70,23 +72,24 @@ class BlockFiller {
   BlockFiller(const VolumeGeometry& geometry, VoxelType type, const std::byte* linear,
               std::byte* block)
       : size_(geometry.size),
-        layout_(geometry.size),
+        layout_(geometry.size, int(sizeof(S))),
         cell_counts_(Volume::cell_counts(geometry)),
+        blocks_(glm::max(
+            cell_counts_,
+            (glm::ivec3(layout_.columns * ColumnLayout::kEdge, layout_.slices) + kCellEdge - 1) /
+                kCellEdge)),
         linear_(reinterpret_cast<const T*>(linear)),
-        voxels_(reinterpret_cast<S*>(block)),
-        cells_(reinterpret_cast<CellRange*>(block + Volume::cells_offset(geometry, type))) {
-    const std::size_t used = std::size_t(layout_.element_count()) * sizeof(S);
-    std::memset(block + used, 0, Volume::cells_offset(geometry, type) - used);
-  }
+        voxels_(block),
+        cells_(reinterpret_cast<CellRange*>(block + Volume::cells_offset(geometry, type))) {}
 
   void run(VolumeInfo& info) {
-    const int rows = layout_.bricks.y * layout_.bricks.z;
+    const int rows = blocks_.y * blocks_.z;
     tbb::parallel_for(tbb::blocked_range<int>(0, rows), [&](const tbb::blocked_range<int>& range) {
       Tally& tally = tallies_.local();
       tally.counts.resize(kCountedValues);
-      RowBuffers buffers(size_.x);
+      RowBuffers buffers(size_.x, layout_.columns.x * ColumnLayout::kEdge);
       for (int row = range.begin(); row < range.end(); ++row)
-        fill_row_of_bricks(row % layout_.bricks.y, row / layout_.bricks.y, buffers, tally);
+        fill_row_of_blocks(row % blocks_.y, row / blocks_.y, buffers, tally);
     });
     finish(info);
   }
@@ -95,10 +98,11 @@ class BlockFiller {
   static constexpr std::size_t kCountedValues =
       std::is_floating_point_v<T> ? 0 : std::size_t(1) << (8 * std::min<std::size_t>(sizeof(T), 2));
 
-  // Working memory of one row of bricks: one row of voxels, and the least and greatest at each x.
+  // Working memory of one row of blocks: one row of voxels with its apron, and the least and
+  // greatest at each x.
   struct RowBuffers {
-    explicit RowBuffers(int width)
-        : row(std::size_t(width)), least(std::size_t(width)), greatest(std::size_t(width)) {}
+    RowBuffers(int width, int stored_width)
+        : row(std::size_t(stored_width)), least(std::size_t(width)), greatest(std::size_t(width)) {}
     std::vector<S> row, least, greatest;
   };
 
@@ -109,64 +113,80 @@ class BlockFiller {
                                      ? std::numeric_limits<S>::infinity()
                                      : std::numeric_limits<S>::max();
 
-  // Bricks (·, by, bz) and their cells. Reads 9×9 rows: a cell ends on its upper neighbours'
-  // voxels.
-  void fill_row_of_bricks(int by, int bz, RowBuffers& buffers, Tally& tally) {
+  // The stored rows and the cells of a row of blocks of 8×8. Reads 10×10 rows: stored rows begin
+  // one voxel before the cells, which end on their upper neighbours' voxels.
+  void fill_row_of_blocks(int by, int bz, RowBuffers& buffers, Tally& tally) {
     std::fill(buffers.least.begin(), buffers.least.end(), kGreatest);
     std::fill(buffers.greatest.begin(), buffers.greatest.end(), kLeast);
-    for (int z = 0; z <= kCellEdge; ++z) {
-      for (int y = 0; y <= kCellEdge; ++y) {
-        const bool inside_brick = y < kCellEdge && z < kCellEdge;
+    const glm::ivec2 extent(size_.y, size_.z);
+    const bool has_cells = by < cell_counts_.y && bz < cell_counts_.z;
+    for (int z = -1; z <= kCellEdge; ++z) {
+      for (int y = -1; y <= kCellEdge; ++y) {
         const glm::ivec2 wanted(by * kCellEdge + y, bz * kCellEdge + z);
-        const glm::ivec2 at = glm::min(wanted, glm::ivec2(size_.y, size_.z) - 1);
-        if (at != wanted && !inside_brick) continue;
-        read_row(at.x, at.y, buffers);
-        if (inside_brick) {
-          write_row(y, z, by, bz, buffers.row);
-          if (at == wanted) count_row(buffers.row, tally);
-        }
+        const glm::ivec2 at = glm::clamp(wanted, glm::ivec2(0), extent - 1);
+        const glm::ivec2 stored = wanted + ColumnLayout::kApron;
+        const bool is_stored = y + 1 < kCellEdge && z + 1 < kCellEdge &&
+                               stored.x < layout_.columns.y * ColumnLayout::kEdge &&
+                               stored.y < layout_.slices;
+        const bool in_cells = has_cells && y >= 0 && z >= 0 && at == wanted;
+        if (!is_stored && !in_cells) continue;
+        read_row(at.x, at.y, buffers.row);
+        if (is_stored) write_row(stored.x, stored.y, buffers.row);
+        if (in_cells) widen_ranges(buffers);
+        if (in_cells && y < kCellEdge && z < kCellEdge) count_row(buffers.row, tally);
       }
     }
-    write_cells(by, bz, buffers, tally);
+    if (has_cells) write_cells(by, bz, buffers, tally);
   }
 
-  void read_row(int y, int z, RowBuffers& buffers) const {
-    const T* from =
-        linear_ + (std::size_t(z) * std::size_t(size_.y) + std::size_t(y)) * std::size_t(size_.x);
+  // A row of voxels, its ends repeated to fill the row.
+  void read_row(int y, int z, std::vector<S>& row) const {
     const auto width = std::size_t(size_.x);
-    S* row = buffers.row.data();
+    const T* from = linear_ + (std::size_t(z) * std::size_t(size_.y) + std::size_t(y)) * width;
+    S* to = row.data() + ColumnLayout::kApron;
+    for (std::size_t x = 0; x < width; ++x) to[x] = stored_from(from[x]);
+    std::fill(row.data(), to, to[0]);
+    std::fill(to + width, row.data() + row.size(), to[width - 1]);
+  }
+
+  void widen_ranges(RowBuffers& buffers) const {
+    const S* row = buffers.row.data() + ColumnLayout::kApron;
     S* least = buffers.least.data();
     S* greatest = buffers.greatest.data();
+    const auto width = std::size_t(size_.x);
     for (std::size_t x = 0; x < width; ++x) {
-      const S value = stored_from(from[x]);
-      row[x] = value;
+      const S value = row[x];
       // In this order a NaN compares false and is left out.
       least[x] = value < least[x] ? value : least[x];
       greatest[x] = value > greatest[x] ? value : greatest[x];
     }
   }
 
-  void write_row(int y, int z, int by, int bz, const std::vector<S>& row) {
-    const std::int64_t first_brick = (std::int64_t(bz) * layout_.bricks.y + by) * layout_.bricks.x;
-    for (int bx = 0; bx < layout_.bricks.x; ++bx) {
-      S* to = voxels_ + (first_brick + bx) * BrickLayout::kBrick + z * BrickLayout::kSlice +
-              y * BrickLayout::kRow;
-      const int first = bx * BrickLayout::kEdgeX - BrickLayout::kLeft;
-      const int from = std::max(first, 0);
-      const int end = std::min(first + BrickLayout::kRow, size_.x);
-      std::fill(to, to + (from - first), row.front());
-      std::copy(row.data() + from, row.data() + end, to + (from - first));
-      std::fill(to + (end - first), to + BrickLayout::kRow, row.back());
+  void write_row(int y, int z, const std::vector<S>& row) {
+    std::byte* to = voxels_ + layout_.offset(0, y, z);
+    for (int column = 0; column < layout_.columns.x; ++column) {
+      std::array<S, ColumnLayout::kEdge> four;
+      std::memcpy(&four, row.data() + column * ColumnLayout::kEdge, sizeof(four));
+      const auto bytes = std::bit_cast<std::array<std::byte, sizeof(four)>>(four);
+      for (std::size_t plane = 0; plane < sizeof(S); ++plane) {
+        std::array<std::byte, ColumnLayout::kEdge> of_plane;
+        for (std::size_t i = 0; i < of_plane.size(); ++i)
+          of_plane[i] = bytes[i * sizeof(S) + plane];
+        std::memcpy(to + std::int64_t(plane) * layout_.plane_bytes, &of_plane, sizeof(of_plane));
+      }
+      to += layout_.column_bytes();
     }
   }
 
   void count_row(const std::vector<S>& row, Tally& tally) const {
+    const S* voxels = row.data() + ColumnLayout::kApron;
+    const auto width = std::size_t(size_.x);
     if constexpr (std::is_floating_point_v<T>) {
       std::uint64_t not_finite = 0;
-      for (const S value : row) not_finite += std::isfinite(value) ? 0 : 1;
+      for (std::size_t x = 0; x < width; ++x) not_finite += std::isfinite(voxels[x]) ? 0 : 1;
       tally.not_finite += not_finite;
     } else {
-      for (const S value : row) ++tally.counts[value];
+      for (std::size_t x = 0; x < width; ++x) ++tally.counts[voxels[x]];
     }
   }
 
@@ -226,17 +246,14 @@ class BlockFiller {
   }
 
   glm::ivec3 size_;
-  BrickLayout layout_;
+  ColumnLayout layout_;
   glm::ivec3 cell_counts_;
+  glm::ivec3 blocks_;  ///< of 8³ voxels that hold all cells and all stored voxels
   const T* linear_;
-  S* voxels_;
+  std::byte* voxels_;
   CellRange* cells_;
   tbb::enumerable_thread_specific<Tally> tallies_;
 };
-
-static_assert(BrickLayout::kEdgeY == kCellEdge && BrickLayout::kEdgeZ == kCellEdge &&
-                  BrickLayout::kEdgeX % kCellEdge == 0,
-              "a row of bricks is a row of cells");
 
 struct AlignedDelete {
   void operator()(const std::byte* memory) const {
@@ -279,7 +296,7 @@ std::shared_ptr<const Volume> build_volume(VolumeInfo info,
       ::operator new(bytes, std::align_val_t(kBlockAlignment), std::nothrow));
   if (!memory)
     throw FatalError({info.file,
-                      "no memory for its " + std::to_string(bytes >> 20) + " MiB of bricks",
+                      "no memory for its " + std::to_string(bytes >> 20) + " MiB of voxels",
                       "use a machine with more memory", ExitStatus::kClusterFailed});
   std::shared_ptr<const std::byte> block(memory, AlignedDelete{});
   fill_block(info, linear_voxels, {memory, bytes});

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// From voxels in a file's order to a Volume: bricks with their neighbour columns, cell ranges and
+// From voxels in a file's order to a Volume: columns of voxels, cell ranges and
 // statistics, in one parallel pass (floats: one more for the histogram).
 
 #include <cstddef>

@@ -1,17 +1,20 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "common/volume/volume.h"
 
-#include <cstring>
+#include <array>
+#include <bit>
 #include <glm/gtc/matrix_inverse.hpp>
 
 namespace goldthread {
 namespace {
 
+// A voxel's bytes, one from each plane, as a number of type T.
 template <class T>
-double element(const std::byte* voxels, std::int64_t index) {
-  T value;
-  std::memcpy(&value, voxels + index * std::int64_t(sizeof(T)), sizeof(T));
-  return double(value);
+double element(const std::byte* first, std::int64_t plane_bytes) {
+  std::array<std::byte, sizeof(T)> bytes;
+  for (std::size_t plane = 0; plane < sizeof(T); ++plane)
+    bytes[plane] = first[std::int64_t(plane) * plane_bytes];
+  return double(std::bit_cast<T>(bytes));
 }
 
 std::size_t aligned(std::size_t bytes) {
@@ -37,11 +40,12 @@ glm::dmat4 VolumeGeometry::index_from_world() const {
 }
 
 Volume::Volume(VolumeInfo info, std::shared_ptr<const std::byte> memory)
-    : info_(std::move(info)), layout_(info_.geometry.size), memory_(std::move(memory)) {}
+    : info_(std::move(info)),
+      layout_(info_.geometry.size, int(bytes_per_voxel(info_.type))),
+      memory_(std::move(memory)) {}
 
 std::size_t Volume::cells_offset(const VolumeGeometry& geometry, VoxelType type) {
-  const auto elements = std::size_t(BrickLayout(geometry.size).element_count());
-  return aligned(elements * bytes_per_voxel(type) + kVoxelTailBytes);
+  return aligned(std::size_t(ColumnLayout(geometry.size, int(bytes_per_voxel(type))).byte_count()));
 }
 
 std::size_t Volume::block_bytes(const VolumeGeometry& geometry, VoxelType type) {
@@ -76,16 +80,17 @@ double Volume::value_bias() const {
 }
 
 double Volume::at(int i, int j, int k) const {
-  const std::int64_t index = layout_.offset(i, j, k);
+  constexpr int kApron = ColumnLayout::kApron;
+  const std::byte* first = voxels() + layout_.offset(i + kApron, j + kApron, k + kApron);
   switch (info_.type) {
     case VoxelType::kUInt8:
     case VoxelType::kInt8:
-      return element<std::uint8_t>(voxels(), index) + value_bias();
+      return element<std::uint8_t>(first, layout_.plane_bytes) + value_bias();
     case VoxelType::kUInt16:
     case VoxelType::kInt16:
-      return element<std::uint16_t>(voxels(), index) + value_bias();
+      return element<std::uint16_t>(first, layout_.plane_bytes) + value_bias();
     case VoxelType::kFloat32:
-      return element<float>(voxels(), index);
+      return element<float>(first, layout_.plane_bytes);
   }
   return 0;
 }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 // A regular volume in memory: its geometry, its statistics, and its voxels in their own type in
-// bricks, with the value range of each 8×8×8 cell. A Volume only views memory that somebody keeps.
+// columns, with the value range of each 8×8×8 cell. A Volume only views memory that somebody keeps.
 
 #include <array>
 #include <cstddef>
@@ -13,7 +13,7 @@
 #include <tuple>
 #include <vector>
 
-#include "common/volume/brick_layout.h"
+#include "common/volume/column_layout.h"
 
 namespace goldthread {
 
@@ -88,8 +88,8 @@ struct CellRange {
   float maximum;
 };
 
-/// Voxels in bricks and the ranges of their cells, in one block of memory that starts with the
-/// voxels: [voxels, kVoxelTailBytes of zeros, padding to 64][CellRange × cell count].
+/// Voxels in columns and the ranges of their cells, in one block of memory that starts with the
+/// voxels: [voxels, a multiple of 64 bytes][CellRange × cell count].
 /// int8 and int16 are stored with the sign bit flipped, so that kernels see unsigned only:
 /// value = stored + value_bias(). Float voxels that are not finite are stored as a quiet NaN, so
 /// that kernels test for one thing only. Beyond the volume's border its outermost voxels are
@@ -106,7 +106,7 @@ class Volume {
   static glm::ivec3 cell_counts(const VolumeGeometry& geometry);
 
   const VolumeInfo& info() const { return info_; }
-  const BrickLayout& layout() const { return layout_; }
+  const ColumnLayout& layout() const { return layout_; }
   const std::byte* voxels() const { return memory_.get(); }
   /// Cells in x-fastest order, cell_counts() of them; cell c covers voxel indices [8c, 8c+8].
   std::span<const CellRange> cells() const;
@@ -118,12 +118,11 @@ class Volume {
 
  private:
   VolumeInfo info_;
-  BrickLayout layout_;
+  ColumnLayout layout_;
   std::shared_ptr<const std::byte> memory_;
 };
 
 constexpr int kCellEdge = 8;
-constexpr std::size_t kVoxelTailBytes = 64;
 constexpr std::size_t kBlockAlignment = 64;
 
 /// "uint8", "int16", "float32" …

@@ -104,7 +104,7 @@ void set_types(StoredType type, VolumeInfo& info) {
 
 Result<std::unique_ptr<std::byte[]>> allocate_voxels(const std::filesystem::path& file,
                                                      std::uint64_t bytes) {
-  // The bricks are made while these voxels are still there, and are up to 1.3 times as large.
+  // The columns are made while these voxels are still there, and are up to 1.3 times as large.
   const std::uint64_t available = available_memory();
   if (bytes < available / 7 * 3) {
     std::unique_ptr<std::byte[]> memory(new (std::nothrow) std::byte[bytes]);

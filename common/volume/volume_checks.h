@@ -36,7 +36,7 @@ std::optional<Failure> choose_component(const LoadOptions& options, VolumeInfo& 
 /// Notes that `type` becomes another one in memory, if it does; sets info.type and stored_type.
 void set_types(StoredType type, VolumeInfo& info);
 
-/// Memory for `bytes`, if the machine has that much to give beside the bricks made from it.
+/// Memory for `bytes`, if the machine has that much to give beside the columns made from it.
 Result<std::unique_ptr<std::byte[]>> allocate_voxels(const std::filesystem::path& file,
                                                      std::uint64_t bytes);
 

@@ -193,9 +193,9 @@ void add_values(Report& report, const VolumeInfo& info) {
   if (info.components > 1)
     type += fmt::format(", component {} of {}", info.component, info.components);
   report.field("type", type);
-  const double bricks = double(Volume::block_bytes(info.geometry, info.type));
+  const double block = double(Volume::block_bytes(info.geometry, info.type));
   const double voxels = double(info.geometry.voxel_count() * bytes_per_voxel(info.type));
-  report.field("memory", fmt::format("{} in bricks, for {} of voxels", bytes_in_words(bricks),
+  report.field("memory", fmt::format("{} in columns, for {} of voxels", bytes_in_words(block),
                                      bytes_in_words(voxels)));
   if (info.histogram.empty()) return;
   report.field("range",

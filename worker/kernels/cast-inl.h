@@ -10,6 +10,7 @@
 
 #include "worker/kernels/greatest_value-inl.h"
 #include "worker/kernels/ray_march-inl.h"
+#include "worker/kernels/surface_march-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace goldthread::HWY_NAMESPACE {
@@ -26,47 +27,34 @@ HWY_INLINE void write_samples(const Floats3& color, Floats alpha, Sample* sample
     samples[i] = {lanes[0][i], lanes[1][i], lanes[2][i], lanes[3][i]};
 }
 
-template <Storage kStorage, Addressing kAddressing, Features kFeatures>
+template <Storage kStorage, Features kFeatures>
 HWY_NOINLINE CastCounts cast(const CastArguments& arguments) {
-  using FieldType = Field<kStorage, kAddressing>;
   CastCounts counts;
   counts.rays = arguments.positions.size();
-  RayBatch batch;
-  for (std::size_t begin = 0; begin < arguments.positions.size(); begin += kBatchRays) {
-    const std::size_t count = std::min(kBatchRays, arguments.positions.size() - begin);
-    set_up_rays(arguments.scene, arguments.view, arguments.positions.data() + begin, count, batch);
-    Sample* samples = arguments.samples.data() + begin;
+  RayColumns columns;
+  for (std::size_t i = 0; i < arguments.positions.size(); i += kLanes) {
+    const std::size_t count = std::min(kLanes, arguments.positions.size() - i);
+    Sample* samples = arguments.samples.data() + i;
+    if (!set_up_rays(arguments.scene, arguments.view, arguments.positions.data() + i, count,
+                     columns)) {
+      std::fill_n(samples, count, Sample{});
+      continue;
+    }
+    const Rays rays(columns);
     // Packets must not leave this function, not even into a lambda: they live in registers.
     if constexpr (kFeatures.mip) {
-      for (std::size_t i = 0; i < count; i += kLanes) {
-        const Rays rays(batch, i);
-        GreatestValue<FieldType> packet(arguments, rays);
-        counts.samples += packet.run();
-        write_samples(packet.color(), packet.alpha(), samples + i, std::min(kLanes, count - i));
-      }
+      GreatestValue<kStorage> packet(arguments, rays);
+      counts.samples += packet.run();
+      write_samples(packet.color(), packet.alpha(), samples, count);
+    } else if constexpr (kFeatures.isosurfaces) {
+      const FineRays fine(columns);
+      SurfaceMarch<kStorage, kFeatures.dvr, kFeatures.shading> packet(arguments, rays, fine);
+      counts.samples += packet.run();
+      write_samples(packet.sum().color(), packet.sum().alpha(), samples, count);
     } else {
-      RayQueue queue(batch, samples, count);
-      using Packet = RayMarch<FieldType, kFeatures>;
-      Packet packet(arguments);
-      if constexpr (kFeatures.isosurfaces) {
-        while (packet.prepare(queue)) {
-          do packet.step();
-          while (packet.may_go_on());
-        }
-      } else {
-        Packet other(arguments);
-        // Both, also where the first has work.
-        while (static_cast<int>(packet.prepare(queue)) | static_cast<int>(other.prepare(queue))) {
-          do {
-            const auto fetched = packet.fetch();
-            const auto other_fetched = other.fetch();
-            packet.step(fetched);
-            other.step(other_fetched);
-          } while (packet.may_go_on() && other.may_go_on());
-        }
-        counts.samples += other.samples();
-      }
-      counts.samples += packet.samples();
+      RayMarch<kStorage, kFeatures.shading> packet(arguments, rays);
+      counts.samples += packet.run();
+      write_samples(packet.sum().color(), packet.sum().alpha(), samples, count);
     }
   }
   return counts;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // How far a ray may go before it must ask again what lies around it: cells of 8³ voxels, leapt over
-// in cubes as large as their distance to the next visible cell (Zuiderveld et al. 1992).
+// in cubes as large as their distance to the next visible cell (Zuiderveld et al. 1992), and
+// known to be visible as far as to the next empty one.
 
 #if defined(GOLDTHREAD_WORKER_KERNELS_CELL_WALK_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef GOLDTHREAD_WORKER_KERNELS_CELL_WALK_INL_H_
@@ -9,11 +10,25 @@
 #define GOLDTHREAD_WORKER_KERNELS_CELL_WALK_INL_H_
 #endif
 
-#include "worker/kernels/field-inl.h"
+#include <cstring>
+
 #include "worker/kernels/ray_packet-inl.h"
+#include "worker/kernels/window-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace goldthread::HWY_NAMESPACE {
+
+/// 32 bits from a byte address per lane, which need not be aligned.
+HWY_INLINE Ints gather_bytes(const std::uint8_t* base, Ints offset) {
+#if HWY_TARGET == HWY_AVX2 || HWY_TARGET == HWY_AVX3 || HWY_TARGET == HWY_AVX3_DL
+  return hn::GatherOffset(kInts, reinterpret_cast<const std::int32_t*>(base), offset);
+#else
+  HWY_ALIGN std::int32_t lanes[hn::MaxLanes(kInts)];
+  hn::Store(offset, kInts, lanes);
+  for (std::int32_t& lane : lanes) std::memcpy(&lane, base + lane, sizeof(lane));
+  return hn::Load(kInts, lanes);
+#endif
+}
 
 class CellWalk {
  public:
@@ -24,22 +39,18 @@ class CellWalk {
   };
 
   HWY_INLINE CellWalk(const KernelScene& scene, const Rays& rays)
-      : cells_(scene.cells), size_(scene.field.size), rays_(rays) {
-    rays_changed();
-  }
-
-  /// To be called when `rays` are others than before.
-  HWY_INLINE void rays_changed() {
-    reach_ = {reach(rays_.direction.x), reach(rays_.direction.y), reach(rays_.direction.z)};
-  }
+      : cells_(scene.cells),
+        size_(scene.field.size),
+        rays_(rays),
+        reach_{reach(rays.direction.x), reach(rays.direction.y), reach(rays.direction.z)} {}
 
   /// The cube around `position`, which is the ray's at `steps`.
   HWY_INLINE Cube look(const Floats3& position, Floats steps) const {
     const Ints3 cell = cell_of(position);
     const Ints word = gather_bytes(cells_.distances, index_of(cell));
-    const Ints distance = hn::And(word, hn::Set(kInts, 255));
-    const auto visible = hn::RebindMask(kFloats, hn::Eq(distance, hn::Zero(kInts)));
-    return {visible, exit_of(cell, hn::Max(distance, hn::Set(kInts, 1)), position, steps)};
+    const Ints distance = hn::And(word, hn::Set(kInts, kMostCellDistance));
+    const auto visible = hn::TestBit(word, hn::Set(kInts, kCellIsVisible));
+    return {hn::RebindMask(kFloats, visible), exit_of(cell, distance, position, steps)};
   }
 
   /// The one cell around `position`; visible where it holds a value above `best`.
@@ -52,10 +63,6 @@ class CellWalk {
   }
 
  private:
-  struct Ints3 {
-    Ints x, y, z;
-  };
-
   /// Steps per voxel; large but finite where the ray does not move along the axis.
   static HWY_INLINE Floats reach(Floats direction) {
     return hn::Div(hn::Set(kFloats, 1.0F), hn::Max(hn::Abs(direction), hn::Set(kFloats, 1e-20F)));
@@ -63,8 +70,7 @@ class CellWalk {
 
   HWY_INLINE Ints3 cell_of(const Floats3& position) const {
     const auto along = [&](Floats p, int axis) HWY_ATTR {
-      return hn::Min(hn::ShiftRight<3>(hn::ConvertTo(kInts, p)),
-                     hn::Set(kInts, cells_.counts[axis] - 1));
+      return hn::Min(hn::ShiftRight<3>(truncated(p)), hn::Set(kInts, cells_.counts[axis] - 1));
     };
     return {along(position.x, 0), along(position.y, 1), along(position.z, 2)};
   }

@@ -18,32 +18,26 @@
 HWY_BEFORE_NAMESPACE();
 namespace goldthread::HWY_NAMESPACE {
 
-template <class FieldType>
+template <Storage kStorage>
 class GreatestValue {
  public:
   HWY_INLINE GreatestValue(const CastArguments& arguments, const Rays& rays)
       : scene_(arguments.scene),
         field_(arguments.scene.field),
         rays_(rays),
-        walk_(arguments.scene, rays) {}
+        walk_(arguments.scene, rays),
+        index_(hn::Neg(rays.delay)) {}
 
   HWY_INLINE std::uint64_t run() {
     const FloatMask hit = hn::Gt(rays_.segments, hn::Zero(kFloats));
-    if (hn::AllFalse(kFloats, hit)) return 0;
     consider(hit, rays_.first);
     consider(hit, rays_.last);
-    FloatMask active = hit;
-    while (true) {
-      active = advance(active);
-      if (hn::AllFalse(kFloats, active)) break;
-      FloatMask unsure;
-      do {
-        const Segment segment = segment_of(rays_, index_);
-        consider(active, middle(segment.begin, segment.end));
-        index_ = hn::Add(index_, hn::Set(kFloats, 1.0F));
-        active = hn::And(active, hn::Lt(index_, rays_.segments));
-        unsure = hn::And(active, hn::Ge(index_, known_until_));
-      } while (hn::AllFalse(kFloats, unsure) && !hn::AllFalse(kFloats, active));
+    alive_ = hit;
+    while (next()) {
+      const Segment segment = segment_of(rays_, index_);
+      consider(hn::And(alive_, hn::Ge(index_, dark_until_)), middle(segment.begin, segment.end));
+      index_ = hn::Add(index_, hn::Set(kFloats, 1.0F));
+      alive_ = hn::And(alive_, hn::Lt(index_, rays_.segments));
     }
     refine(hit);
     return samples_;
@@ -62,27 +56,35 @@ class GreatestValue {
   HWY_INLINE FloatMask found() const { return is_finite(best_); }
 
   HWY_INLINE void consider(FloatMask active, Floats steps) {
-    const Floats value = field_.value(field_.locate(rays_.at(steps, scene_.field.upper)));
+    const Floats value = field_.value(locate(rays_.at(steps, scene_.field.upper)), active);
     const FloatMask better = hn::And(hn::And(active, is_finite(value)), hn::Gt(value, best_));
     best_ = hn::IfThenElse(better, value, best_);
     best_at_ = hn::IfThenElse(better, steps, best_at_);
     samples_ += hn::CountTrue(kFloats, active);
   }
 
-  HWY_INLINE FloatMask advance(FloatMask active) {
-    FloatMask unsure = hn::And(active, hn::Ge(index_, known_until_));
-    while (!hn::AllFalse(kFloats, unsure)) {
-      const Segment segment = segment_of(rays_, index_);
-      const Floats steps = middle(segment.begin, segment.end);
-      const auto cube = walk_.look_for_more(rays_.at(steps, scene_.field.upper), steps, best_);
-      const Floats target = segment_after(index_, cube.exit);
-      const FloatMask leap = hn::AndNot(cube.visible, unsure);
-      known_until_ = hn::IfThenElse(unsure, target, known_until_);
-      index_ = hn::IfThenElse(leap, target, index_);
-      active = hn::And(active, hn::Lt(index_, rays_.segments));
-      unsure = hn::And(active, leap);
+  /// Goes on to the next segment in which any ray may find more; false when all have ended. What a
+  /// ray takes along in the company of others can only be less than the best: never more.
+  HWY_INLINE bool next() {
+    while (true) {
+      const FloatMask unsure = hn::And(alive_, hn::Ge(index_, known_until_));
+      if (!hn::AllFalse(kFloats, unsure)) look(unsure);
+      if (!hn::AllFalse(kFloats, hn::And(alive_, hn::Ge(index_, dark_until_)))) return true;
+      if (hn::AllFalse(kFloats, alive_)) return false;
+      const Floats far = hn::Set(kFloats, 1e30F);
+      const Floats way = hn::IfThenElse(alive_, hn::Sub(dark_until_, index_), far);
+      index_ = hn::Add(index_, hn::MinOfLanes(kFloats, way));
+      alive_ = hn::And(alive_, hn::Lt(index_, rays_.segments));
     }
-    return active;
+  }
+
+  HWY_INLINE void look(FloatMask unsure) {
+    const Segment segment = segment_of(rays_, index_);
+    const Floats steps = middle(segment.begin, segment.end);
+    const auto cube = walk_.look_for_more(rays_.at(steps, scene_.field.upper), steps, best_);
+    const Floats until = segment_after(index_, cube.exit);
+    known_until_ = hn::IfThenElse(unsure, until, known_until_);
+    dark_until_ = hn::IfThenElse(hn::AndNot(cube.visible, unsure), until, dark_until_);
   }
 
   /// Samples densely about the best one, twice.
@@ -102,12 +104,14 @@ class GreatestValue {
   }
 
   const KernelScene& scene_;
-  FieldType field_;
+  Field<kStorage, false> field_;
   const Rays& rays_;
   CellWalk walk_;
 
-  Floats index_ = hn::Zero(kFloats);
+  Floats index_;
+  FloatMask alive_ = hn::Gt(hn::Zero(kFloats), hn::Zero(kFloats));
   Floats known_until_ = hn::Zero(kFloats);
+  Floats dark_until_ = hn::Zero(kFloats);
   Floats best_ = hn::Set(kFloats, -std::numeric_limits<float>::infinity());
   Floats best_at_ = hn::Zero(kFloats);
   std::uint64_t samples_ = 0;

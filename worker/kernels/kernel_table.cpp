@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "worker/kernels/kernel_table.h"
 
-#include <limits>
-
 #include "worker/kernels/kernel_units.h"
 
 #undef HWY_TARGET_INCLUDE
@@ -24,12 +22,9 @@ HWY_EXPORT(this_target);
 
 using Unit = CastCounts (*)(Features, const CastArguments&);
 
-// By storage, addressing, and whether the scene is shaded.
-constexpr Unit kUnits[3][2][2] = {
-    {{cast_uint8, cast_uint8_lit}, {cast_uint8_wide, cast_uint8_wide_lit}},
-    {{cast_uint16, cast_uint16_lit}, {cast_uint16_wide, cast_uint16_wide_lit}},
-    {{cast_float32, cast_float32_lit}, {cast_float32_wide, cast_float32_wide_lit}},
-};
+// By storage, and whether the scene is shaded.
+constexpr Unit kUnits[3][2] = {
+    {cast_uint8, cast_uint8_lit}, {cast_uint16, cast_uint16_lit}, {cast_float32, cast_float32_lit}};
 
 }  // namespace
 
@@ -44,15 +39,8 @@ Storage storage_of(VoxelType type) {
   }
 }
 
-Addressing addressing_of(const BrickLayout& layout, VoxelType type) {
-  const std::int64_t bytes = layout.element_count() * std::int64_t(bytes_per_voxel(type));
-  return bytes <= std::numeric_limits<std::int32_t>::max() ? Addressing::kNarrow
-                                                           : Addressing::kWide;
-}
-
-Kernel find_kernel(Features features, Storage storage, Addressing addressing) {
-  return {features, storage, addressing,
-          kUnits[int(storage)][int(addressing)][features.shading ? 1 : 0]};
+Kernel find_kernel(Features features, Storage storage) {
+  return {features, storage, kUnits[int(storage)][features.shading ? 1 : 0]};
 }
 
 std::vector<std::string> names_of(Features features) {

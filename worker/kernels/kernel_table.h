@@ -10,11 +10,15 @@
 //   kernel_unit-inl.h            a unit: all combinations of features for one kind of voxel
 //   └ cast-inl.h                 positions to packets, packets to samples
 //     ├ ray_packet-inl.h         a ray per lane, set up in double, segments counted from the camera
-//     ├ ray_march-inl.h          emission and absorption, isosurfaces
+//     ├ ray_march-inl.h          emission and absorption
 //     │ ├ cell_walk-inl.h        leaps over empty cells
-//     │ ├ field-inl.h            trilinear values and gradients from bricked voxels
-//     │ ├ transfer-inl.h         value to colour and extinction
-//     │ └ shading-inl.h          Phong
+//     │ ├ field-inl.h            trilinear values and gradients
+//     │ │ └ window-inl.h         a packet's voxels by permutations in registers
+//     │ ├ transfer-inl.h         value to colour and opacity
+//     │ ├ shading-inl.h          Phong
+//     │ └ accumulation-inl.h     front to back
+//     ├ surface_march-inl.h      isosurfaces, alone or with emission and absorption
+//     │ └ cell_cubic-inl.h       the field along a ray inside one cell
 //     └ greatest_value-inl.h     maximum intensity projection
 
 #include <string>
@@ -36,13 +40,9 @@ struct Features {
 /// How a voxel lies in memory. Signed integers are stored with their sign flipped, as unsigned.
 enum class Storage : std::uint8_t { kUInt8, kUInt16, kFloat32 };
 
-/// 32-bit byte offsets reach 2 GiB; beyond, bricks and places in them are addressed apart, slower.
-enum class Addressing : std::uint8_t { kNarrow, kWide };
-
 struct Kernel {
   Features features;
   Storage storage = Storage::kUInt8;
-  Addressing addressing = Addressing::kNarrow;
   /// All kernels of one unit (a .cpp file); picks by the features.
   CastCounts (*unit)(Features features, const CastArguments& arguments) = nullptr;
 
@@ -51,12 +51,9 @@ struct Kernel {
 
 Storage storage_of(VoxelType type);
 
-/// Narrow wherever the voxels allow it.
-Addressing addressing_of(const BrickLayout& layout, VoxelType type);
-
 /// The features must be a combination that a scene can have: mip alone, or dvr and isosurfaces,
 /// one or both, shaded or not.
-Kernel find_kernel(Features features, Storage storage, Addressing addressing);
+Kernel find_kernel(Features features, Storage storage);
 
 /// "dvr", "shading", "isosurfaces", "mip".
 std::vector<std::string> names_of(Features features);

@@ -14,42 +14,52 @@
 
 namespace goldthread {
 
-/// Address arithmetic of BrickLayout, ready for 32-bit lanes.
+/// ColumnLayout as plain numbers.
 struct FieldLayout {
   const std::uint8_t* voxels = nullptr;
   std::int32_t size[3] = {0, 0, 0};  ///< voxels, each at least 2
   float upper[3] = {0, 0, 0};        ///< the greatest float below size − 1: positions end here
-  /// Byte offset = Σ coordinate·local + (coordinate >> shift)·step, local that of BrickLayout
-  /// inside a brick; void in a volume ≥ 2 GiB.
-  std::int32_t step_bytes[3] = {0, 0, 0};
-  std::int32_t brick_stride[3] = {0, 0, 0};  ///< bricks to the next one along each axis
+  std::int32_t last_origin[3] = {0, 0, 0};  ///< greatest stored coordinates where a window begins
+  std::int64_t plane_bytes = 0, column_bytes = 0, row_bytes = 0;
 };
+
+/// In CellGrid::distances.
+constexpr std::uint8_t kMostCellDistance = 127;
+constexpr std::uint8_t kCellIsVisible = 128;
 
 /// Cells of 8³ voxels, for leaping over emptiness.
 struct CellGrid {
   std::int32_t counts[3] = {0, 0, 0};
-  /// Chebyshev distance in cells to the next visible cell, 0 in a visible one; 3 bytes of padding.
-  const std::uint8_t* distances = nullptr;
+  const std::uint8_t* distances = nullptr;  ///< of cell_distances()
   const CellRange* ranges = nullptr;
 };
 
-/// Colour over value as straight segments, few enough to be kept in registers: segment i holds from
-/// start[i] to start[i+1]; before the first and behind the last its end's colour.
-struct ColorSegments {
+/// The transfer function as few segments of value, which are kept in registers: segment i holds
+/// from start[i] to start[i+1], the first also before, the last also behind. With w = value −
+/// start: colour is a line in w, opacity of a segment of full length a cubic, off by less than 2e-7
+/// of itself, and exactly 0 where extinction is.
+struct TransferSegments {
   static constexpr int kMost = 16;
-  int count = 0;  ///< 0: there are more; the table has the colours too
+  int count = 0;  ///< 0: more would be needed; then the rows serve
   float start[kMost] = {};
-  float color[3][kMost] = {};  ///< at start
-  float slope[3][kMost] = {};  ///< per value
+  float color[3][2][kMost] = {};  ///< constant and linear coefficient
+  float opacity[4][kMost] = {};   ///< constant to cubic coefficient
+
+  /// Equal buckets of value, to find a segment without a search.
+  static constexpr int kBuckets = 64;
+  bool has_buckets = false;  ///< at most one segment starts inside each bucket
+  float first_bucket = 0, buckets_per_value = 0;
+  std::uint8_t bucket[kBuckets] = {};  ///< the segment in which it begins
+  float end[kMost] = {};               ///< of each segment; the last one has none
 };
 
 /// The transfer function as rows of red, green, blue and extinction (1/mm) at equal distances of
-/// value, joined linearly.
+/// value, joined linearly; and as segments.
 struct TransferTable {
   const float* rows = nullptr;
   const float* extinctions = nullptr;  ///< of the rows, once more by themselves
   const float* opacities = nullptr;  ///< of a segment of full length: 1 − e^(−extinction·step)
-  ColorSegments colors;
+  const TransferSegments* segments = nullptr;
   float first_value = 0;
   float rows_per_value = 0;
   float last_row = 1;  ///< index of the last row, at least 1

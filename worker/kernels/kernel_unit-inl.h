@@ -2,10 +2,9 @@
 // One unit of kernels, compiled for every instruction set and exported under one name. A .cpp file
 // names its unit and includes this file: units are apart so that each builds in well under a
 // minute. The .cpp defines
-//   KERNEL_UNIT       the exported function
-//   KERNEL_STORAGE    a Storage
-//   KERNEL_ADDRESSING an Addressing
-//   KERNEL_LIT        whether the unit holds the shaded kernels (true) or the others (false)
+//   KERNEL_UNIT     the exported function
+//   KERNEL_STORAGE  a Storage
+//   KERNEL_LIT      whether the unit holds the shaded kernels (true) or the others (false)
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "worker/kernels/kernel_unit-inl.h"
@@ -20,17 +19,16 @@ namespace goldthread::HWY_NAMESPACE {
 /// The kernel for `features`, which are the same for all rays of the call.
 static CastCounts cast_unit(Features features, const CastArguments& arguments) {
   constexpr Storage kStorage = Storage::KERNEL_STORAGE;
-  constexpr Addressing kAddressing = Addressing::KERNEL_ADDRESSING;
   constexpr bool kLit = KERNEL_LIT;
   constexpr Features kDvr{.dvr = true, .shading = kLit};
   constexpr Features kSurfaces{.shading = kLit, .isosurfaces = true};
   constexpr Features kBoth{.dvr = true, .shading = kLit, .isosurfaces = true};
   if constexpr (!kLit) {
-    if (features.mip) return cast<kStorage, kAddressing, Features{.mip = true}>(arguments);
+    if (features.mip) return cast<kStorage, Features{.mip = true}>(arguments);
   }
-  if (features == kDvr) return cast<kStorage, kAddressing, kDvr>(arguments);
-  if (features == kSurfaces) return cast<kStorage, kAddressing, kSurfaces>(arguments);
-  return cast<kStorage, kAddressing, kBoth>(arguments);
+  if (features == kDvr) return cast<kStorage, kDvr>(arguments);
+  if (features == kSurfaces) return cast<kStorage, kSurfaces>(arguments);
+  return cast<kStorage, kBoth>(arguments);
 }
 
 }  // namespace goldthread::HWY_NAMESPACE

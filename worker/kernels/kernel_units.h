@@ -8,15 +8,9 @@ namespace goldthread {
 
 CastCounts cast_uint8(Features features, const CastArguments& arguments);
 CastCounts cast_uint8_lit(Features features, const CastArguments& arguments);
-CastCounts cast_uint8_wide(Features features, const CastArguments& arguments);
-CastCounts cast_uint8_wide_lit(Features features, const CastArguments& arguments);
 CastCounts cast_uint16(Features features, const CastArguments& arguments);
 CastCounts cast_uint16_lit(Features features, const CastArguments& arguments);
-CastCounts cast_uint16_wide(Features features, const CastArguments& arguments);
-CastCounts cast_uint16_wide_lit(Features features, const CastArguments& arguments);
 CastCounts cast_float32(Features features, const CastArguments& arguments);
 CastCounts cast_float32_lit(Features features, const CastArguments& arguments);
-CastCounts cast_float32_wide(Features features, const CastArguments& arguments);
-CastCounts cast_float32_wide_lit(Features features, const CastArguments& arguments);
 
 }  // namespace goldthread

@@ -73,20 +73,19 @@ double step_of(double wanted_mm, const VolumeGeometry& geometry) {
 }
 
 FieldLayout field_layout_of(const Volume& volume) {
-  const BrickLayout& layout = volume.layout();
-  const auto bytes = std::int64_t(bytes_per_voxel(volume.info().type));
-  const glm::i64vec3 step = layout.brick_step();
-  const bool narrow = addressing_of(layout, volume.info().type) == Addressing::kNarrow;
+  const ColumnLayout& layout = volume.layout();
   FieldLayout field;
   field.voxels = reinterpret_cast<const std::uint8_t*>(volume.voxels());
   for (int axis = 0; axis < 3; ++axis) {
     field.size[axis] = layout.size[axis];
     field.upper[axis] = std::nextafter(float(layout.size[axis] - 1), 0.0F);
-    field.step_bytes[axis] = narrow ? std::int32_t(step[axis] * bytes) : 0;
   }
-  field.brick_stride[0] = 1;
-  field.brick_stride[1] = layout.bricks.x;
-  field.brick_stride[2] = layout.bricks.x * layout.bricks.y;
+  field.last_origin[0] = (layout.columns.x - 2) * ColumnLayout::kEdge;
+  field.last_origin[1] = (layout.columns.y - 2) * ColumnLayout::kEdge;
+  field.last_origin[2] = layout.slices - ColumnLayout::kWindow;
+  field.plane_bytes = layout.plane_bytes;
+  field.column_bytes = layout.column_bytes();
+  field.row_bytes = layout.row_bytes();
   return field;
 }
 

@@ -18,52 +18,63 @@ namespace goldthread::HWY_NAMESPACE {
 HWY_INLINE Floats3 normalised(const Floats3& v) {
   const Floats squared = dot(v, v);
   const auto usable = hn::And(hn::Gt(squared, hn::Set(kFloats, 1e-30F)), is_finite(squared));
-  const Floats one = hn::Set(kFloats, 1.0F);
-  const Floats inverse = hn::Div(one, hn::Sqrt(hn::IfThenElse(usable, squared, one)));
-  return {hn::IfThenElseZero(usable, hn::Mul(v.x, inverse)),
-          hn::IfThenElseZero(usable, hn::Mul(v.y, inverse)),
-          hn::IfThenElseZero(usable, hn::Mul(v.z, inverse))};
+  const Floats inverse = hn::IfThenElseZero(
+      usable, inverse_sqrt(hn::IfThenElse(usable, squared, hn::Set(kFloats, 1.0F))));
+  const auto along = [&](Floats component) HWY_ATTR {
+    return hn::IfThenElseZero(usable, hn::Mul(component, inverse));
+  };
+  return {along(v.x), along(v.y), along(v.z)};
 }
 
-/// `color` lit. `gradient` is per voxel and a covector: it goes to the world by the inverse
-/// transpose. `step` is the ray's direction in voxels, of any length. Where the gradient vanishes
-/// the ambient term alone remains.
-HWY_INLINE Floats3 shade(const PhongTerm& phong, const std::vector<LightTerm>& lights,
-                         const Floats3& color, const Floats3& gradient, const Floats3& position,
-                         const Floats3& step) {
-  const Floats3 normal = normalised(transform(phong.normal_from_gradient, gradient));
-  const Floats3 ray = normalised(transform(phong.world_from_index, step));
-  const Floats normal_ray = dot(normal, ray);
-  const FloatMask lit = hn::Gt(dot(normal, normal), hn::Zero(kFloats));
-  const Floats ambient = hn::Set(kFloats, phong.ambient);
-  Floats3 scale{ambient, ambient, ambient};
-  Floats3 shine{hn::Zero(kFloats), hn::Zero(kFloats), hn::Zero(kFloats)};
-  for (const LightTerm& light : lights) {
-    Floats3 to_light{hn::Set(kFloats, light.vector[0]), hn::Set(kFloats, light.vector[1]),
-                     hn::Set(kFloats, light.vector[2])};
-    if (light.is_point) {
-      const Floats3 place = transform(phong.world_from_index, position);
-      to_light = normalised({hn::Sub(to_light.x, place.x), hn::Sub(to_light.y, place.y),
-                             hn::Sub(to_light.z, place.z)});
+class PhongShading {
+ public:
+  /// `step` is the rays' direction in voxels, of any length.
+  HWY_INLINE PhongShading(const PhongTerm& phong, const std::vector<LightTerm>& lights,
+                          const Floats3& step)
+      : phong_(phong), lights_(lights), ray_(normalised(transform(phong.world_from_index, step))) {}
+
+  /// `color` lit. `gradient` is per voxel and a covector: it goes to the world by the inverse
+  /// transpose. Where it vanishes the ambient term alone remains.
+  HWY_INLINE Floats3 shade(const Floats3& color, const Floats3& gradient,
+                           const Floats3& position) const {
+    const Floats3 normal = normalised(transform(phong_.normal_from_gradient, gradient));
+    const Floats normal_ray = dot(normal, ray_);
+    const FloatMask lit = hn::Gt(dot(normal, normal), hn::Zero(kFloats));
+    const Floats ambient = hn::Set(kFloats, phong_.ambient);
+    Floats3 scale{ambient, ambient, ambient};
+    Floats3 shine{hn::Zero(kFloats), hn::Zero(kFloats), hn::Zero(kFloats)};
+    for (const LightTerm& light : lights_) {
+      Floats3 to_light{hn::Set(kFloats, light.vector[0]), hn::Set(kFloats, light.vector[1]),
+                       hn::Set(kFloats, light.vector[2])};
+      if (light.is_point) {
+        const Floats3 place = transform(phong_.world_from_index, position);
+        to_light = normalised({hn::Sub(to_light.x, place.x), hn::Sub(to_light.y, place.y),
+                               hn::Sub(to_light.z, place.z)});
+      }
+      const Floats normal_light = dot(normal, to_light);
+      // r·v with r = 2(n·l)n − l and v against the ray; |r·v| does not see the sign of either.
+      const Floats mirrored =
+          hn::Sub(hn::Mul(hn::Add(normal_light, normal_light), normal_ray), dot(to_light, ray_));
+      const Floats highlight =
+          power(hn::Min(hn::Abs(mirrored), hn::Set(kFloats, 1.0F)), phong_.shininess);
+      add_scaled(light.diffuse, hn::Abs(normal_light), scale);
+      add_scaled(light.specular, hn::IfThenElseZero(lit, highlight), shine);
     }
-    const Floats normal_light = dot(normal, to_light);
-    // r·v with r = 2(n·l)n − l and v against the ray; |r·v| does not see the sign of either.
-    const Floats mirrored =
-        hn::Sub(hn::Mul(hn::Add(normal_light, normal_light), normal_ray), dot(to_light, ray));
-    const Floats highlight =
-        power(hn::Min(hn::Abs(mirrored), hn::Set(kFloats, 1.0F)), phong.shininess);
-    const Floats facing = hn::Abs(normal_light);
-    const Floats glint = hn::IfThenElseZero(lit, highlight);
-    scale.x = hn::MulAdd(facing, hn::Set(kFloats, light.diffuse[0]), scale.x);
-    scale.y = hn::MulAdd(facing, hn::Set(kFloats, light.diffuse[1]), scale.y);
-    scale.z = hn::MulAdd(facing, hn::Set(kFloats, light.diffuse[2]), scale.z);
-    shine.x = hn::MulAdd(glint, hn::Set(kFloats, light.specular[0]), shine.x);
-    shine.y = hn::MulAdd(glint, hn::Set(kFloats, light.specular[1]), shine.y);
-    shine.z = hn::MulAdd(glint, hn::Set(kFloats, light.specular[2]), shine.z);
+    return {hn::MulAdd(color.x, scale.x, shine.x), hn::MulAdd(color.y, scale.y, shine.y),
+            hn::MulAdd(color.z, scale.z, shine.z)};
   }
-  return {hn::MulAdd(color.x, scale.x, shine.x), hn::MulAdd(color.y, scale.y, shine.y),
-          hn::MulAdd(color.z, scale.z, shine.z)};
-}
+
+ private:
+  static HWY_INLINE void add_scaled(const float* rgb, Floats factor, Floats3& to) {
+    to.x = hn::MulAdd(factor, hn::Set(kFloats, rgb[0]), to.x);
+    to.y = hn::MulAdd(factor, hn::Set(kFloats, rgb[1]), to.y);
+    to.z = hn::MulAdd(factor, hn::Set(kFloats, rgb[2]), to.z);
+  }
+
+  const PhongTerm& phong_;
+  const std::vector<LightTerm>& lights_;
+  Floats3 ray_;  ///< the rays' directions in the world, of unit length
+};
 
 }  // namespace goldthread::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();

@@ -77,8 +77,7 @@ HWY_INLINE TablePlace place_in(const TransferTable& table, Floats value) {
   const Floats exact = hn::Mul(hn::Sub(value, hn::Set(kFloats, table.first_value)),
                                hn::Set(kFloats, table.rows_per_value));
   const Floats place = hn::Min(hn::Max(exact, hn::Zero(kFloats)), hn::Set(kFloats, table.last_row));
-  const Ints row =
-      hn::Min(hn::ConvertTo(kInts, place), hn::Set(kInts, std::int32_t(table.last_row) - 1));
+  const Ints row = hn::Min(truncated(place), hn::Set(kInts, std::int32_t(table.last_row) - 1));
   return {row, hn::Sub(place, hn::ConvertTo(kFloats, row))};
 }
 
@@ -88,31 +87,73 @@ HWY_INLINE Optics look_up(const TransferTable& table, Floats value) {
   return interpolated_rows(table.rows, place.row, place.fraction);
 }
 
-/// Whether color_in_segments may be called: the segments fit into the lanes of a vector.
-HWY_INLINE bool has_segments(const TransferTable& table) {
-  return table.colors.count > 0 && std::size_t(table.colors.count) <= kLanes;
+/// Whether `segments` may be used: they fit into the lanes of a vector.
+HWY_INLINE bool fit_lanes(const TransferSegments& segments) {
+  return segments.count > 0 && std::size_t(segments.count) <= hn::MaxLanes(kFloats);
 }
 
-/// The colour alone, from segments in registers: no memory is touched. `value` must be finite.
-HWY_INLINE Floats3 color_in_segments(const ColorSegments& segments, Floats value) {
-  Ints segment = hn::Zero(kInts);
-  for (int i = 1; i < segments.count; ++i) {
-    const auto behind = hn::RebindMask(kInts, hn::Ge(value, hn::Set(kFloats, segments.start[i])));
-    segment = hn::Add(segment, hn::IfThenElseZero(behind, hn::Set(kInts, 1)));
+/// Where a value lies among the segments, which are in registers: no memory is touched.
+class SegmentPlace {
+ public:
+  /// `value` must be finite.
+  HWY_INLINE SegmentPlace(const TransferSegments& segments, Floats value)
+      : segments_(segments),
+        index_(hn::IndicesFromVec(kFloats, segment_of(segments, value))),
+        way_(hn::Max(hn::Sub(value, coefficient(segments.start)), hn::Zero(kFloats))) {}
+
+  /// Of a segment of full length.
+  HWY_INLINE Floats opacity() const {
+    const auto& c = segments_.opacity;
+    const Floats high = hn::MulAdd(way_, coefficient(c[3]), coefficient(c[2]));
+    const Floats low = hn::MulAdd(way_, coefficient(c[1]), coefficient(c[0]));
+    const Floats all = hn::MulAdd(hn::Mul(way_, way_), high, low);
+    return hn::Min(hn::Max(all, hn::Zero(kFloats)), hn::Set(kFloats, 1.0F));
   }
-  const auto index = hn::IndicesFromVec(kFloats, segment);
-  const auto of_segment = [&](const float* table) HWY_ATTR {
-    return hn::TableLookupLanes(hn::LoadU(kFloats, table), index);
-  };
-  const Floats way = hn::Max(hn::Sub(value, of_segment(segments.start)), hn::Zero(kFloats));
-  return {hn::MulAdd(way, of_segment(segments.slope[0]), of_segment(segments.color[0])),
-          hn::MulAdd(way, of_segment(segments.slope[1]), of_segment(segments.color[1])),
-          hn::MulAdd(way, of_segment(segments.slope[2]), of_segment(segments.color[2]))};
-}
+  HWY_INLINE Floats3 color() const { return {channel(0), channel(1), channel(2)}; }
+
+ private:
+  static HWY_INLINE Ints segment_of(const TransferSegments& segments, Floats value) {
+#if HWY_TARGET == HWY_AVX3_DL
+    if (segments.has_buckets) return segment_by_bucket(segments, value);
+#endif
+    Ints segment = hn::Zero(kInts);
+    for (int i = 1; i < segments.count; ++i) {
+      const auto behind = hn::RebindMask(kInts, hn::Ge(value, hn::Set(kFloats, segments.start[i])));
+      segment = hn::Sub(segment, hn::VecFromMask(kInts, behind));
+    }
+    return segment;
+  }
+#if HWY_TARGET == HWY_AVX3_DL
+  /// The segment in which the value's bucket begins, or the one after it.
+  static HWY_INLINE Ints segment_by_bucket(const TransferSegments& segments, Floats value) {
+    const Floats exact = hn::Mul(hn::Sub(value, hn::Set(kFloats, segments.first_bucket)),
+                                 hn::Set(kFloats, segments.buckets_per_value));
+    const Floats last = hn::Set(kFloats, float(TransferSegments::kBuckets - 1));
+    const Ints bucket = truncated(hn::Min(hn::Max(exact, hn::Zero(kFloats)), last));
+    const Ints first =
+        hn::And(Ints{_mm512_permutexvar_epi8(bucket.raw, _mm512_loadu_si512(segments.bucket))},
+                hn::Set(kInts, 255));
+    const auto index = hn::IndicesFromVec(kFloats, first);
+    const Floats end = hn::TableLookupLanes(hn::LoadU(kFloats, segments.end), index);
+    const auto behind = hn::RebindMask(kInts, hn::Ge(value, end));
+    return hn::Sub(first, hn::VecFromMask(kInts, behind));
+  }
+#endif
+  HWY_INLINE Floats coefficient(const float* table) const {
+    return hn::TableLookupLanes(hn::LoadU(kFloats, table), index_);
+  }
+  HWY_INLINE Floats channel(int c) const {
+    return hn::MulAdd(way_, coefficient(segments_.color[c][1]), coefficient(segments_.color[c][0]));
+  }
+
+  const TransferSegments& segments_;
+  decltype(hn::IndicesFromVec(kFloats, Ints())) index_;
+  Floats way_;
+};
 
 /// A column of the table alone.
 HWY_INLINE Floats interpolated_column(const float* column, const TablePlace& place) {
-#if HWY_TARGET == HWY_AVX2 || HWY_TARGET == HWY_AVX3
+#if HWY_TARGET == HWY_AVX2 || HWY_TARGET == HWY_AVX3 || HWY_TARGET == HWY_AVX3_DL
   // A row and the next one in a gather of 64 bits: half as many loads.
   constexpr hn::Repartition<std::int64_t, FloatTag> kPairs{};
   const auto* pairs = reinterpret_cast<const std::int64_t*>(column);
@@ -130,17 +171,37 @@ HWY_INLINE Floats interpolated_column(const float* column, const TablePlace& pla
 #endif
 }
 
-/// Opacity of segments of the given lengths in steps, at most 1. Nearly all are full ones, which
-/// need no exponential.
-HWY_INLINE Floats opacity_of(const TransferTable& table, Floats value, Floats steps,
-                             float step_mm) {
+/// Opacity and colour of a value.
+struct Look {
+  Floats opacity;
+  Floats3 color;
+};
+
+/// Of segments of the given lengths in steps, at most 1. Nearly all are full ones, which need no
+/// exponential. `value` must be finite.
+HWY_INLINE Look look_at(const TransferTable& table, Floats value, Floats steps, float step_mm) {
+  const auto part = hn::Lt(steps, hn::Set(kFloats, 1.0F));
+  const bool all_full = hn::AllFalse(kFloats, part);
+  const auto of_part = [&](Floats full, Floats extinction) HWY_ATTR {
+    const Floats depth = hn::Mul(extinction, hn::Mul(steps, hn::Set(kFloats, step_mm)));
+    return hn::IfThenElse(part, one_minus_exp(depth), full);
+  };
+  Look look{hn::Zero(kFloats), {hn::Zero(kFloats), hn::Zero(kFloats), hn::Zero(kFloats)}};
+  if (fit_lanes(*table.segments)) {
+    const SegmentPlace place(*table.segments, value);
+    look.opacity = place.opacity();
+    if (!all_full)
+      look.opacity =
+          of_part(look.opacity, interpolated_column(table.extinctions, place_in(table, value)));
+    look.color = place.color();
+    return look;
+  }
   const TablePlace place = place_in(table, value);
-  const Floats full = interpolated_column(table.opacities, place);
-  const auto is_part = hn::Lt(steps, hn::Set(kFloats, 1.0F));
-  if (hn::AllFalse(kFloats, is_part)) return full;
-  const Floats extinction = interpolated_column(table.extinctions, place);
-  const Floats depth = hn::Mul(extinction, hn::Mul(steps, hn::Set(kFloats, step_mm)));
-  return hn::IfThenElse(is_part, one_minus_exp(depth), full);
+  look.opacity = interpolated_column(table.opacities, place);
+  if (!all_full)
+    look.opacity = of_part(look.opacity, interpolated_column(table.extinctions, place));
+  look.color = interpolated_rows(table.rows, place.row, place.fraction).color;
+  return look;
 }
 
 }  // namespace goldthread::HWY_NAMESPACE

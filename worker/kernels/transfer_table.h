@@ -28,7 +28,7 @@ class TransferRows {
   std::vector<float> rows_;
   std::vector<float> extinctions_;
   std::vector<float> opacities_;
-  ColorSegments colors_;
+  TransferSegments segments_;
   float first_value_ = 0;
   float rows_per_value_ = 0;
 };

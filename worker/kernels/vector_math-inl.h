@@ -30,6 +30,17 @@ struct Floats3 {
   Floats x, y, z;
 };
 
+/// Towards 0, for numbers that an int32 can hold; others are unspecified but harmless.
+HWY_INLINE Ints truncated(Floats v) {
+#if HWY_TARGET == HWY_AVX3 || HWY_TARGET == HWY_AVX3_DL
+  return Ints{_mm512_cvttps_epi32(v.raw)};
+#elif HWY_TARGET == HWY_AVX2
+  return Ints{_mm256_cvttps_epi32(v.raw)};
+#else
+  return hn::ConvertTo(kInts, v);
+#endif
+}
+
 HWY_INLINE Floats lerp(Floats a, Floats b, Floats fraction) {
   return hn::MulAdd(fraction, hn::Sub(b, a), a);
 }
@@ -84,6 +95,19 @@ HWY_INLINE Floats power(Floats base, float exponent) {
   const Floats product = hn::Mul(logarithm, hn::Set(kFloats, exponent));
   const auto seen = hn::Gt(product, hn::Set(kFloats, -80.0F));
   return hn::IfThenElseZero(seen, hn::Exp(kFloats, hn::Min(product, hn::Set(kFloats, 80.0F))));
+}
+
+/// 1 / √x for normal x > 0, to 2 ulp: an estimate, then Newton's step where the estimate has at
+/// least 14 bits; elsewhere by division.
+HWY_INLINE Floats inverse_sqrt(Floats x) {
+#if HWY_TARGET == HWY_AVX3 || HWY_TARGET == HWY_AVX3_DL
+  const Floats y = Floats{_mm512_rsqrt14_ps(x.raw)};
+  const Floats half = hn::Mul(hn::Set(kFloats, 0.5F), x);
+  const Floats rest = hn::NegMulAdd(hn::Mul(half, y), y, hn::Set(kFloats, 0.5F));
+  return hn::MulAdd(y, rest, y);
+#else
+  return hn::Div(hn::Set(kFloats, 1.0F), hn::Sqrt(x));
+#endif
 }
 
 /// False for NaN and both infinities.

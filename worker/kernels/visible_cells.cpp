@@ -89,13 +89,16 @@ bool CellVisibility::has_extinction(double minimum, double maximum) const {
   return opaque_before_[until] > opaque_before_[from];
 }
 
-std::vector<std::uint8_t> distances_to_visible(std::span<const CellRange> cells, glm::ivec3 counts,
-                                               const CellVisibility& visible) {
-  std::vector<std::uint8_t> distances(cells.size() + kGatherPadding, 255);
+std::vector<std::uint8_t> cell_distances(std::span<const CellRange> cells, glm::ivec3 counts,
+                                         const CellVisibility& visible) {
+  std::vector<std::uint8_t> to_visible(cells.size() + kGatherPadding, kMostCellDistance);
+  std::vector<std::uint8_t> to_empty(cells.size(), kMostCellDistance);
+  for (std::size_t i = 0; i < cells.size(); ++i) (visible(cells[i]) ? to_visible : to_empty)[i] = 0;
+  ChessboardTransform(to_visible, counts).run();
+  ChessboardTransform(to_empty, counts).run();
   for (std::size_t i = 0; i < cells.size(); ++i)
-    if (visible(cells[i])) distances[i] = 0;
-  ChessboardTransform(distances, counts).run();
-  return distances;
+    if (to_visible[i] == 0) to_visible[i] = std::uint8_t(to_empty[i] | kCellIsVisible);
+  return to_visible;
 }
 
 }  // namespace goldthread

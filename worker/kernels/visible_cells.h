@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 // Which cells of a volume can show anything under a transfer function and isosurfaces, and how far
-// each of the others is from one that can.
+// each is from the next of the other kind.
 
 #include <cstdint>
 #include <glm/glm.hpp>
@@ -10,6 +10,7 @@
 
 #include "common/scene/scene.h"
 #include "common/volume/volume.h"
+#include "worker/kernels/kernel_types.h"
 
 namespace goldthread {
 
@@ -34,9 +35,10 @@ class CellVisibility {
   double margin_;
 };
 
-/// Chebyshev distances in cells, 0 where visible, at most 255, x fastest; and 3 bytes of padding
-/// for gathers of 32 bits. Exact for distances up to 255.
-std::vector<std::uint8_t> distances_to_visible(std::span<const CellRange> cells, glm::ivec3 counts,
-                                               const CellVisibility& visible);
+/// Of each cell the Chebyshev distance in cells to the next one of the other kind, visible or
+/// empty, at most kMostCellDistance, and kCellIsVisible in visible ones; x fastest; and 3 bytes of
+/// padding for gathers of 32 bits.
+std::vector<std::uint8_t> cell_distances(std::span<const CellRange> cells, glm::ivec3 counts,
+                                         const CellVisibility& visible);
 
 }  // namespace goldthread

@@ -51,16 +51,9 @@ std::shared_ptr<const Volume> volume_of(const std::vector<T>& voxels, glm::ivec3
 }
 
 template <class T>
-T stored_at(const Volume& volume, std::int64_t offset) {
-  T value;
-  std::memcpy(&value, volume.voxels() + offset * std::int64_t(sizeof(T)), sizeof(T));
-  return value;
-}
-
-template <class T>
-class Bricks : public testing::Test {};
+class Columns : public testing::Test {};
 using AllTypes = testing::Types<std::uint8_t, std::int8_t, std::uint16_t, std::int16_t, float>;
-TYPED_TEST_SUITE(Bricks, AllTypes);
+TYPED_TEST_SUITE(Columns, AllTypes);
 
 constexpr int kEdges[] = {1, 7, 8, 9, 31, 32, 33, 70};
 
@@ -82,7 +75,7 @@ void for_each_voxel(glm::ivec3 size, Check check) {
       for (int i = 0; i < size.x; ++i) check(i, j, k, index++);
 }
 
-TYPED_TEST(Bricks, HoldEachVoxelsValue) {
+TYPED_TEST(Columns, HoldEachVoxelsValue) {
   for (const glm::ivec3 size : sizes()) {
     const auto linear = noise<TypeParam>(size);
     const auto volume = volume_of(linear, size);
@@ -96,52 +89,44 @@ TYPED_TEST(Bricks, HoldEachVoxelsValue) {
   }
 }
 
-// The promise to gathers: from any voxel of a row, x−1 … x+2 lie side by side, and outside the
-// volume its outermost voxel is repeated.
-TYPED_TEST(Bricks, HoldARowsNeighboursBesideIt) {
-  using S =
-      std::conditional_t<std::is_floating_point_v<TypeParam>, std::uint32_t,
-                         std::conditional_t<sizeof(TypeParam) == 1, std::uint8_t, std::uint16_t>>;
+// The promise to kernels: 8 slices of a window follow each other, 4×4 bytes each, plane by plane,
+// and one voxel beyond the volume its border is repeated.
+TYPED_TEST(Columns, AreSlicesOfSixteenWithTheBorderRepeated) {
+  constexpr int kApron = ColumnLayout::kApron;
   for (const glm::ivec3 size : sizes()) {
     const auto volume = volume_of(noise<TypeParam>(size), size);
-    const BrickLayout& layout = volume->layout();
+    const ColumnLayout& layout = volume->layout();
+    ASSERT_EQ(layout.planes, int(sizeof(TypeParam)));
     std::size_t wrong = 0;
-    for_each_voxel(size, [&](int i, int j, int k, std::size_t) {
-      for (int step = -1; step <= 2; ++step) {
-        const int neighbour = std::clamp(i + step, 0, size.x - 1);
-        wrong += stored_at<S>(*volume, layout.offset(i, j, k) + step) !=
-                 stored_at<S>(*volume, layout.offset(neighbour, j, k));
+    for_each_voxel(size + 2 * kApron, [&](int x, int y, int z, std::size_t) {
+      const glm::ivec3 inside = glm::clamp(glm::ivec3(x, y, z) - kApron, glm::ivec3(0), size - 1);
+      const glm::ivec3 stored = inside + kApron;
+      for (int plane = 0; plane < layout.planes; ++plane) {
+        const std::int64_t column = (y / 4) * layout.row_bytes() + (x / 4) * layout.column_bytes() +
+                                    plane * layout.plane_bytes;
+        wrong += volume->voxels()[column + 16 * z + 4 * (y % 4) + x % 4] !=
+                 volume->voxels()[layout.offset(stored.x, stored.y, stored.z) +
+                                  plane * layout.plane_bytes];
       }
     });
     EXPECT_EQ(wrong, 0u) << size.x << " " << size.y << " " << size.z;
   }
 }
 
-TYPED_TEST(Bricks, RepeatTheOutermostVoxelsBeyondTheBorder) {
-  using S =
-      std::conditional_t<std::is_floating_point_v<TypeParam>, std::uint32_t,
-                         std::conditional_t<sizeof(TypeParam) == 1, std::uint8_t, std::uint16_t>>;
-  const glm::ivec3 size(33, 9, 7);
-  const auto volume = volume_of(noise<TypeParam>(size), size);
-  const BrickLayout& layout = volume->layout();
-  std::size_t wrong = 0;
-  for_each_voxel(layout.bricks * glm::ivec3(32, 8, 8), [&](int i, int j, int k, std::size_t) {
-    const glm::ivec3 inside = glm::min(glm::ivec3(i, j, k), size - 1);
-    wrong += stored_at<S>(*volume, layout.offset(i, j, k)) !=
-             stored_at<S>(*volume, layout.offset(inside.x, inside.y, inside.z));
-  });
-  EXPECT_EQ(wrong, 0u);
+TYPED_TEST(Columns, HoldAWindowAnywhereAndAreNotMuchLargerThanTheVoxels) {
+  for (const glm::ivec3 size : sizes()) {
+    const ColumnLayout layout(size, int(sizeof(TypeParam)));
+    EXPECT_GE(layout.slices, ColumnLayout::kWindow);
+    EXPECT_GE(layout.columns.x, 2);
+    EXPECT_GE(layout.columns.y, 2);
+    EXPECT_GE(layout.plane_bytes, layout.slices * ColumnLayout::kSlice);
+    EXPECT_EQ(layout.plane_bytes % 128, 64);
+  }
+  const ColumnLayout large({512, 512, 512}, int(sizeof(TypeParam)));
+  EXPECT_LT(double(large.byte_count()), 1.03 * double(sizeof(TypeParam)) * (1 << 27));
 }
 
-TYPED_TEST(Bricks, EndInATailOfZeros) {
-  const glm::ivec3 size(9, 9, 9);
-  const auto volume = volume_of(noise<TypeParam>(size), size);
-  const std::size_t end = std::size_t(volume->layout().element_count()) * sizeof(TypeParam);
-  for (std::size_t i = 0; i < kVoxelTailBytes; ++i)
-    EXPECT_EQ(volume->voxels()[end + i], std::byte{0}) << i;
-}
-
-TYPED_TEST(Bricks, CellsKnowTheRangeOfTheVoxelsThatASampleInsideTouches) {
+TYPED_TEST(Columns, CellsKnowTheRangeOfTheVoxelsThatASampleInsideTouches) {
   for (const glm::ivec3 size : sizes()) {
     const auto linear = noise<TypeParam>(size);
     const auto volume = volume_of(linear, size);
@@ -169,7 +154,7 @@ TYPED_TEST(Bricks, CellsKnowTheRangeOfTheVoxelsThatASampleInsideTouches) {
   }
 }
 
-TYPED_TEST(Bricks, StatisticsAgreeWithTheVoxels) {
+TYPED_TEST(Columns, StatisticsAgreeWithTheVoxels) {
   for (const glm::ivec3 size : sizes()) {
     const auto linear = noise<TypeParam>(size);
     const VolumeInfo info = volume_of(linear, size)->info();

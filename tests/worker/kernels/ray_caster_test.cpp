@@ -11,7 +11,7 @@
 #include <random>
 
 #include "cast_support.h"
-#include "worker/kernels/wide_commit.h"
+#include "worker/kernels/kernel_table.h"
 
 namespace goldthread::test {
 namespace {
@@ -126,26 +126,6 @@ TEST_P(EveryInstructionSet, SurvivesBadVoxels) {
     const Distance found = distance(picture, reference_picture(scene, *volume, positions));
     EXPECT_LT(found.rms, name == "dvr" ? 0.5 : 8) << name;
   }
-}
-
-TEST(RayCaster, AddressesWithMoreThan32BitsGiveTheSameBits) {
-  for (const VoxelType type : {VoxelType::kUInt8, VoxelType::kUInt16, VoxelType::kFloat32}) {
-    const auto volume = blob_volume(type);
-    for (const auto& [name, scene] : scenes_of_all_kernels(volume->info())) {
-      const auto positions = pixel_centres(scene.image.size);
-      Picture wide(positions.size());
-      make_ray_caster(commit_scene(scene, volume, Addressing::kWide), *scene.camera,
-                      scene.image.size)
-          ->cast(positions, wide);
-      EXPECT_TRUE(same_bits(wide, cast(scene, volume, positions))) << name;
-    }
-  }
-}
-
-TEST(RayCaster, VolumesOfMoreThan2GibAreAddressedWide) {
-  EXPECT_EQ(addressing_of(BrickLayout({1024, 1024, 1024}), VoxelType::kUInt8), Addressing::kNarrow);
-  EXPECT_EQ(addressing_of(BrickLayout({1024, 1024, 1024}), VoxelType::kInt16), Addressing::kWide);
-  EXPECT_EQ(addressing_of(BrickLayout({2048, 1024, 1024}), VoxelType::kUInt8), Addressing::kWide);
 }
 
 TEST(RayCaster, CopiesOfTheSameDataInOtherTypesGiveTheSamePicture) {

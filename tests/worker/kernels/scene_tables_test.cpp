@@ -97,28 +97,34 @@ TEST(VisibleCells, ACellThatHoldsAnIsovalueIsVisible) {
   EXPECT_FALSE(visible({8, 14}));
 }
 
-TEST(VisibleCells, DistancesAreChebyshevs) {
+TEST(VisibleCells, DistancesAreChebyshevsToTheOtherKind) {
   const glm::ivec3 counts(13, 9, 7);
-  std::vector<CellRange> cells(std::size_t(counts.x * counts.y * counts.z), {0, 0});
-  std::vector<glm::ivec3> seen;
-  std::mt19937 random(2);
-  for (int n = 0; n < 4; ++n) {
-    const glm::ivec3 c(random() % 13, random() % 9, random() % 7);
-    cells[std::size_t((c.z * counts.y + c.y) * counts.x + c.x)] = {1, 1};
-    seen.push_back(c);
-  }
   const std::vector<Isosurface> surfaces{{.value = 1}};
-  const auto distances = distances_to_visible(cells, counts, CellVisibility(nullptr, surfaces, 0));
-  for (int z = 0; z < counts.z; ++z)
-    for (int y = 0; y < counts.y; ++y)
-      for (int x = 0; x < counts.x; ++x) {
-        int expected = 255;
-        for (const glm::ivec3& c : seen) {
-          const glm::ivec3 d = glm::abs(c - glm::ivec3(x, y, z));
-          expected = std::min(expected, std::max({d.x, d.y, d.z}));
-        }
-        EXPECT_EQ(distances[std::size_t((z * counts.y + y) * counts.x + x)], expected);
-      }
+  std::mt19937 random(2);
+  for (const double share : {0.01, 0.5, 0.99}) {
+    std::vector<CellRange> cells(std::size_t(counts.x * counts.y * counts.z), {0, 0});
+    for (CellRange& cell : cells)
+      if (std::uniform_real_distribution<double>()(random) < share) cell = {1, 1};
+    const auto found = cell_distances(cells, counts, CellVisibility(nullptr, surfaces, 0));
+    const auto at = [&](glm::ivec3 c) {
+      return std::size_t((c.z * counts.y + c.y) * counts.x + c.x);
+    };
+    const auto for_each_cell = [&](const auto& use) {
+      for (int z = 0; z < counts.z; ++z)
+        for (int y = 0; y < counts.y; ++y)
+          for (int x = 0; x < counts.x; ++x) use(glm::ivec3(x, y, z));
+    };
+    for_each_cell([&](glm::ivec3 cell) {
+      const bool visible = cells[at(cell)].maximum == 1;
+      int expected = kMostCellDistance;
+      for_each_cell([&](glm::ivec3 other) {
+        if ((cells[at(other)].maximum == 1) == visible) return;
+        const glm::ivec3 d = glm::abs(other - cell);
+        expected = std::min(expected, std::max({d.x, d.y, d.z}));
+      });
+      EXPECT_EQ(found[at(cell)], expected + (visible ? kCellIsVisible : 0));
+    });
+  }
 }
 
 TEST(Step, DefaultsToHalfTheSmallestSpacingAndNeverNeedsTooManySegments) {

@@ -1,6 +1,0 @@
-// SPDX-License-Identifier: Apache-2.0
-#define KERNEL_UNIT cast_float32_wide_lit
-#define KERNEL_STORAGE kFloat32
-#define KERNEL_ADDRESSING kWide
-#define KERNEL_LIT true
-#include "worker/kernels/kernel_unit-inl.h"
