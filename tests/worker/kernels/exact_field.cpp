@@ -18,7 +18,8 @@ glm::dmat3 linear_map(const VolumeGeometry& geometry) {
                     geometry.direction[2] * geometry.spacing_mm[2]);
 }
 
-// c0 + c1·s + c2·s² + c3·s³ over s in [0, 1].
+}  // namespace
+
 struct Cubic {
   std::array<double, 4> c;
 
@@ -58,8 +59,6 @@ struct Cubic {
     return 0.5 * (low + high);
   }
 };
-
-}  // namespace
 
 IndexRay index_ray(const Scene& scene, const VolumeGeometry& geometry, PixelPosition position) {
   const Ray ray = camera_ray(*scene.camera, scene.image.size, position.x, position.y);
@@ -150,6 +149,28 @@ glm::dvec3 ExactField::gradient(const glm::ivec3& cell, const glm::dvec3& index)
   return covector_map_ * gradient;
 }
 
+Cubic ExactField::cubic_in(const IndexRay& ray, const CellSpan& span, double level) const {
+  std::array<double, 4> f{};
+  for (std::size_t i = 0; i < 4; ++i) {
+    const double t = span.begin_mm + (span.end_mm - span.begin_mm) * double(i) / 3;
+    f[i] = value(span.cell, ray.at(t)) - level;
+  }
+  return Cubic::through(f);
+}
+
+std::vector<Place> ExactField::turns(const IndexRay& ray) const {
+  std::vector<Place> places;
+  for (const CellSpan& span : spans(ray)) {
+    if (!is_finite(span.cell)) continue;
+    const Cubic cubic = cubic_in(ray, span, 0);
+    std::size_t count = 0;
+    const std::array<double, 4> ends = cubic.pieces(count);
+    for (std::size_t i = 0; i < count; ++i)
+      places.push_back({span.begin_mm + ends[i] * (span.end_mm - span.begin_mm), cubic(ends[i])});
+  }
+  return places;
+}
+
 Crossings ExactField::crossings(const IndexRay& ray, double isovalue) const {
   Crossings result;
   const double cells_per_mm = glm::length(ray.direction);
@@ -170,10 +191,7 @@ Crossings ExactField::crossings(const IndexRay& ray, double isovalue) const {
       continue;
     }
     const double length = span.end_mm - span.begin_mm;
-    std::array<double, 4> f{};
-    for (int i = 0; i < 4; ++i)
-      f[std::size_t(i)] = value(span.cell, ray.at(span.begin_mm + length * i / 3.0)) - isovalue;
-    const Cubic cubic = Cubic::through(f);
+    const Cubic cubic = cubic_in(ray, span, isovalue);
     std::size_t count = 0;
     const std::array<double, 4> ends = cubic.pieces(count);
     // The field turns inside the cell, at a face between two cells, or where the ray ends.

@@ -28,6 +28,12 @@ struct CellSpan {
   double begin_mm, end_mm;
 };
 
+/// A value on a ray.
+struct Place {
+  double t_mm;
+  double value;
+};
+
 /// Where a ray crosses an isovalue.
 struct Crossing {
   double t_mm;
@@ -42,6 +48,9 @@ struct Crossings {
   double clearance = 1;
 };
 
+/// c0 + c1·s + c2·s² + c3·s³ over s in [0, 1]: what a trilinear field is on a ray inside a cell.
+struct Cubic;
+
 class ExactField {
  public:
   explicit ExactField(const Volume& volume);
@@ -51,6 +60,8 @@ class ExactField {
   /// The cells on a ray in its order, bad ones too; none where it misses.
   std::vector<CellSpan> spans(const IndexRay& ray) const;
   bool is_finite(const glm::ivec3& cell) const;
+  /// Where the ray enters finite cells, turns in them and leaves them: monotone in between.
+  std::vector<Place> turns(const IndexRay& ray) const;
   /// Trilinear in the cell, also a little outside of it.
   double value(const glm::ivec3& cell, const glm::dvec3& index) const;
   /// Central differences at the voxels, clamped at the border, interpolated; world, per mm.
@@ -59,6 +70,8 @@ class ExactField {
 
  private:
   double voxel(const glm::ivec3& at) const;
+  /// Minus `level`, over the way through the cell from 0 to 1.
+  Cubic cubic_in(const IndexRay& ray, const CellSpan& span, double level) const;
   glm::dvec3 central_difference(const glm::ivec3& at) const;
 
   VolumeGeometry geometry_;
