@@ -108,7 +108,7 @@ void measure_instruction_set(const std::string& name, const Subject& subject,
                              const ErrorBenchSettings& settings, References& references,
                              FrameCaster& caster, Report& report) {
   force_instruction_set(name);
-  std::vector<OwnEntry> entries = own_entries(subject, {0, 0.5});
+  std::vector<OwnEntry> entries = own_entries(subject, {0});
   std::vector<Contestant> contestants;
   for (OwnEntry& entry : entries)
     contestants.push_back({"", [&] { return entry.method.frame_seconds(caster); }});

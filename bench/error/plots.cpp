@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <limits>
 #include <utility>
 
 namespace goldthread::bench {
@@ -141,7 +142,7 @@ constexpr const char* kFrame =
     "set encoding utf8\n"
     "set border 3 lc rgb '#444444'\n"
     "set tics nomirror out textcolor rgb '#222222'\n"
-    "set grid xtics ytics lc rgb '#dddddd' lw 0.6\n"
+    "set grid xtics ytics lt 1 lc rgb '#dddddd' lw 0.5\n"
     "set key outside right center Left reverse samplen 2 spacing 1.25\n";
 
 constexpr const char* kLogLog =
@@ -150,20 +151,35 @@ constexpr const char* kLogLog =
     "set ylabel 'RMS error in 1/255'\n";
 
 std::string subtitle_of(const Report& report) {
-  return fmt::format("{}×{} pixels, {} threads, {}", report.size.width, report.size.height,
-                     report.threads, report.instruction_set);
+  return fmt::format("{}×{} pixels, {} threads", report.size.width, report.size.height,
+                     report.threads);
 }
 
-std::string titled(const std::string& title, const Report& report) {
-  return "set title " + quoted(title + " (" + subtitle_of(report) + ")") + " noenhanced\n";
+std::string titled(const std::string& title, const std::string& subtitle) {
+  return "set title " + quoted(title + " (" + subtitle + ")") + " noenhanced\n";
+}
+
+/// The curves' extent along x, with a little room.
+std::string x_range(const std::vector<Curve>& curves) {
+  double low = std::numeric_limits<double>::infinity(), high = 0;
+  for (const Curve& curve : curves) {
+    for (const auto& point : curve.points) {
+      low = std::min(low, point.first);
+      high = std::max(high, point.first);
+    }
+  }
+  return fmt::format("set xrange [{:.6g}:{:.6g}]\n", low / 1.3, high * 1.3);
 }
 
 std::string error_time(const Report& report) {
   std::vector<Curve> curves = curves_of(report, time_and_error, true);
   if (curves.empty()) return {};
   if (Curve marks = default_marks(report); !marks.points.empty()) curves.push_back(marks);
-  return kFrame + std::string(kLogLog) + titled("Error against time", report) +
-         "set format x '%g'\nset xlabel 'median time of a frame in ms'\n" + data_blocks(curves) +
+  return kFrame + std::string(kLogLog) +
+         titled("Error against time", subtitle_of(report) + ", " + report.instruction_set) +
+         "set xtics (1, 2, 5, 10, 20, 50, 100, 200, 500, 1000, 2000, 5000, 10000)\n"
+         "set xlabel 'median time of a frame in ms'\n" +
+         x_range(curves) + data_blocks(curves) +
          on_both_terminals("error-time", plot_command(curves));
 }
 
@@ -174,9 +190,11 @@ std::string error_step(const Report& report) {
   Curve guide{"second order", "with lines lc rgb '#888888' dt 3 lw 1.4", {}};
   for (const double h : {1.0, 1 / 16.0}) guide.points.emplace_back(step * h, 1.6 * error * h * h);
   curves.push_back(guide);
-  return kFrame + std::string(kLogLog) + titled("Error against step", report) +
+  return kFrame + std::string(kLogLog) +
+         titled("Error against step", subtitle_of(report) + ", " + report.instruction_set) +
          "set xtics (0.0625, 0.125, 0.25, 0.5, 1, 2, 4)\nset xlabel 'step in voxels'\n" +
-         data_blocks(curves) + on_both_terminals("error-step", plot_command(curves));
+         x_range(curves) + data_blocks(curves) +
+         on_both_terminals("error-step", plot_command(curves));
 }
 
 /// A group of bars for each instruction set: the bare loop, and the looks at their default step.
@@ -197,10 +215,10 @@ std::string samples_per_second(const Report& report) {
     command += fmt::format("{}$bars using {}:xtic(1) title columnheader lc rgb '{}'",
                            column > 2 ? ", \\\n     " : "", column,
                            column == 2 ? "#999999" : color_of(kLooks[std::size_t(column - 3)]));
-  return kFrame + titled("Samples per second", report) +
+  return kFrame + titled("Samples per second", subtitle_of(report)) +
          "set style data histograms\nset style histogram clustered gap 1.5\n"
          "set style fill solid 0.9 noborder\nset boxwidth 0.92\nset yrange [0:*]\n"
-         "unset grid\nset grid ytics lc rgb '#dddddd' lw 0.6\n"
+         "unset grid\nset grid ytics lt 1 lc rgb '#dddddd' lw 0.5\n"
          "set ylabel 'million samples per second'\n" +
          data + "END\n" + on_both_terminals("samples-per-second", command + "\n");
 }

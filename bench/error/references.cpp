@@ -3,6 +3,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "bench/error/rounds.h"
 #include "bench/reference/reference_integrator.h"
 
@@ -35,11 +37,20 @@ std::vector<Color> References::compute(Look look, int stride, int substeps, Shif
                             in_phase(settings_, fmt::format("reference, {}", name_of(look)))});
 }
 
+const std::vector<Color>& References::kept(Look look, int stride, int substeps, Shift shift) {
+  const Key key{look, stride, shift.x, shift.y};
+  const auto known = pictures_.find(key);
+  if (known != pictures_.end()) return known->second;
+  return pictures_[key] = compute(look, stride, substeps, shift);
+}
+
 const std::vector<Color>& References::of(Look look) {
-  if (const auto known = pictures_.find(look); known != pictures_.end()) return known->second;
+  const bool known = std::any_of(rows_.begin(), rows_.end(),
+                                 [&](const ReferenceRow& row) { return row.look == look; });
+  if (known) return moved(look, {});
   ReferenceRow row{look, kSubsteps};
-  std::vector<Color>& picture = pictures_[look];
-  row.seconds = seconds_of([&] { picture = compute(look, settings_.stride, kSubsteps, {}); });
+  row.seconds = seconds_of([&] { moved(look, {}); });
+  const std::vector<Color>& picture = moved(look, {});
   const int stride = kThinForConvergence * settings_.stride;
   const auto sparse =
       thinned(picture, {subject_.scene.image.size, settings_.stride}, kThinForConvergence);
@@ -49,8 +60,8 @@ const std::vector<Color>& References::of(Look look) {
   return picture;
 }
 
-std::vector<Color> References::moved(Look look, Shift shift) const {
-  return compute(look, settings_.stride, kSubsteps, shift);
+const std::vector<Color>& References::moved(Look look, Shift shift) {
+  return kept(look, settings_.stride, kSubsteps, shift);
 }
 
 Alignment References::align(Look look, std::span<const Color> shown) {
@@ -58,10 +69,9 @@ Alignment References::align(Look look, std::span<const Color> shown) {
       thinned(shown, {subject_.scene.image.size, settings_.stride}, kThinForAlignment);
   const int stride = kThinForAlignment * settings_.stride;
   const Shift best = best_alignment(sparse, [&](Shift shift) {
-                       return compute(look, stride, kSubstepsForAlignment, shift);
+                       return kept(look, stride, kSubstepsForAlignment, shift);
                      }).shift;
-  const bool centred = best == Shift{};
-  return {best, picture_error(shown, centred ? of(look) : moved(look, best))};
+  return {best, picture_error(shown, moved(look, best))};
 }
 
 std::vector<Color> thinned(std::span<const Color> picture, const Subset& subset, int keep) {

@@ -5,6 +5,7 @@
 
 #include <map>
 #include <span>
+#include <tuple>
 #include <vector>
 
 #include "bench/error/bench_error.h"
@@ -19,7 +20,7 @@ class References {
   /// On every settings.stride-th pixel.
   const std::vector<Color>& of(Look look);
   /// The same for sample points moved from the pixels' centres.
-  std::vector<Color> moved(Look look, Shift shift) const;
+  const std::vector<Color>& moved(Look look, Shift shift);
   /// A peer's error at its best alignment, which is searched for on fewer pixels. `shown` is the
   /// whole subset.
   Alignment align(Look look, std::span<const Color> shown);
@@ -28,12 +29,17 @@ class References {
   const std::vector<ReferenceRow>& rows() const { return rows_; }
 
  private:
+  /// A look, a stride, and a shift's x and y.
+  using Key = std::tuple<Look, int, double, double>;
+
   std::vector<Color> compute(Look look, int stride, int substeps, Shift shift) const;
+  /// Computed once.
+  const std::vector<Color>& kept(Look look, int stride, int substeps, Shift shift);
 
   const Subject& subject_;
   const ErrorBenchSettings& settings_;
   std::vector<double> voxels_;
-  std::map<Look, std::vector<Color>> pictures_;
+  std::map<Key, std::vector<Color>> pictures_;
   std::vector<ReferenceRow> rows_;
 };
 

@@ -10,6 +10,11 @@ std::string step_label(double step_voxels) {
   return step_voxels > 0 ? fmt::format("{:g}", step_voxels) : "default";
 }
 
+/// "–" where nothing was timed.
+std::string time_of(const Seconds& of, double seconds) {
+  return of.count > 0 ? milliseconds(seconds) : "–";
+}
+
 std::string millions(double count) { return count > 0 ? number(1e-6 * count) : "–"; }
 
 Section goal_section(const Report& report) {
@@ -56,11 +61,11 @@ Section method_section(const Report& report) {
     std::string how = row.how;
     if (row.shift) how += fmt::format(", moved by ({:g}, {:g}) px", row.shift->x, row.shift->y);
     section.table.rows.push_back({row.program, name_of(row.look), step_label(row.step_voxels),
-                                  milliseconds(row.seconds.minimum),
-                                  milliseconds(row.seconds.median), millions(double(row.rays)),
-                                  millions(double(row.samples)), millions(row.samples_per_second()),
-                                  number(row.error.rms), number(row.error.percentile_999),
-                                  number(row.error.maximum),
+                                  time_of(row.seconds, row.seconds.minimum),
+                                  time_of(row.seconds, row.seconds.median),
+                                  millions(double(row.rays)), millions(double(row.samples)),
+                                  millions(row.samples_per_second()), number(row.error.rms),
+                                  number(row.error.percentile_999), number(row.error.maximum),
                                   fmt::format("{:.3f} %", 100 * row.error.share_off_by_32), how});
   }
   return section;

@@ -22,8 +22,8 @@ from vtkmodules.vtkCommonCore import vtkSMPTools, vtkVersion
 from vtkmodules.vtkCommonDataModel import vtkPiecewiseFunction
 from vtkmodules.vtkFiltersCore import vtkFlyingEdges3D
 from vtkmodules.vtkIOImage import vtkImageReader2, vtkNIFTIImageReader, vtkPNGWriter
-from vtkmodules.vtkRenderingCore import (vtkActor, vtkColorTransferFunction, vtkPolyDataMapper,
-                                         vtkRenderer, vtkRenderWindow, vtkVolume,
+from vtkmodules.vtkRenderingCore import (vtkActor, vtkColorTransferFunction, vtkLight,
+                                         vtkPolyDataMapper, vtkRenderer, vtkRenderWindow, vtkVolume,
                                          vtkVolumeProperty, vtkWindowToImageFilter)
 from vtkmodules.vtkRenderingVolume import vtkFixedPointVolumeRayCastMapper
 import vtkmodules.vtkRenderingOpenGL2  # noqa: F401  (registers the window)
@@ -61,6 +61,20 @@ def read_volume(job, from_original):
     return reader.GetOutput()
 
 
+def headlight():
+    """As VTK would make it, but with an ambient colour: volumes are dark without, whatever their material."""
+    light = vtkLight()
+    light.SetLightTypeToHeadlight()
+    light.SetAmbientColor(1, 1, 1)
+    return light
+
+
+def blinn_power(job):
+    """VTK's highlight of a headlight falls off with the angle of normal and light, Phong's with twice that
+    angle: cos(2a)^n is cos(a)^(4n) for small a."""
+    return 4 * job["shading"]["shininess"]
+
+
 class Window:
     """An off-screen window with the job's camera."""
 
@@ -72,6 +86,7 @@ class Window:
         self.window.SetMultiSamples(0)
         self.window.SetSize(*job["imageSize"])
         self.window.AddRenderer(self.renderer)
+        self.renderer.AddLight(headlight())
         self.camera = self.renderer.GetActiveCamera()
         self.camera.SetPosition(*job["camera"]["position"])
         self.camera.SetFocalPoint(*job["camera"]["target"])
@@ -124,7 +139,7 @@ class VolumeView(Window):
             material.SetAmbient(job["shading"]["ambient"])
             material.SetDiffuse(job["shading"]["diffuse"])
             material.SetSpecular(job["shading"]["specular"])
-            material.SetSpecularPower(job["shading"]["shininess"])
+            material.SetSpecularPower(blinn_power(job))
         return material
 
     def set_step(self, step):
@@ -149,7 +164,7 @@ class SurfaceView(Window):
         look.SetAmbient(job["shading"]["ambient"])
         look.SetDiffuse(job["shading"]["diffuse"])
         look.SetSpecular(job["shading"]["specular"])
-        look.SetSpecularPower(job["shading"]["shininess"])
+        look.SetSpecularPower(blinn_power(job))
         look.SetSpecularColor(1, 1, 1)
         self.renderer.AddActor(actor)
         self.renderer.ResetCameraClippingRange()
