@@ -46,6 +46,7 @@ void measure_methods(const Subject& subject, const ErrorBenchSettings& settings,
                      Report& report) {
   std::vector<OwnEntry> entries = own_entries(subject, own_steps(settings.quick));
   std::vector<Contestant> contestants;
+  contestants.reserve(entries.size() + 1);
   for (OwnEntry& entry : entries)
     contestants.push_back({"", [&] { return entry.method.frame_seconds(caster); }});
   contestants.push_back(gather_contestant(subject, settings.threads));
@@ -168,7 +169,8 @@ void write_report(Report& report, const std::filesystem::path& folder) {
   std::string missing;
   for (const Plot& plot : plots_of(report))
     if (const std::string why = draw(plot, folder); !why.empty()) missing = why;
-  if (!missing.empty()) report.notes.push_back("no plots: " + missing);
+  if (!missing.empty())
+    report.notes.push_back(fmt::format("no plots: {} (launch/peers installs gnuplot)", missing));
   write_text(folder / "report.json", report_json(report));
   write_text(folder / "report.md", report_markdown(report));
 }

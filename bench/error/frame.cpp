@@ -76,7 +76,8 @@ std::size_t Subset::count() const {
 
 PixelPosition Subset::centre(std::size_t i) const {
   const auto columns = std::size_t((image.width + stride - 1) / stride);
-  return {float(stride) * float(i % columns) + 0.5F, float(stride) * float(i / columns) + 0.5F};
+  const std::size_t column = i % columns, row = i / columns;
+  return {float(stride) * float(column) + 0.5F, float(stride) * float(row) + 0.5F};
 }
 
 std::vector<Color> reference_picture(const ReferenceRequest& request) {

@@ -105,8 +105,8 @@ PacketRays packet_in_the_middle(const Camera& camera, ImageSize size,
   const double distance = glm::length(camera.target - camera.position);
   PacketRays rays{};
   for (int i = 0; i < PacketRays::kRays; ++i) {
-    const Ray ray =
-        camera_ray(camera, size, size.width / 2 + i % 4 + 0.5, size.height / 2 + i / 4 + 0.5);
+    const int x = size.width / 2 + i % 4, y = size.height / 2 + i / 4;
+    const Ray ray = camera_ray(camera, size, x + 0.5, y + 0.5);
     const glm::dvec3 step = glm::dmat3(map) * ray.direction * step_mm;
     const glm::dvec3 start(map * glm::dvec4(ray.origin + ray.direction * distance, 1));
     for (int axis = 0; axis < 3; ++axis) {

@@ -92,7 +92,7 @@ void add_unused_features(const Report& report, std::vector<Goal>& goals) {
     const double percent = 100 * (row.by_minimum - 1);
     goals.push_back(
         {row.name, "0 ± 1 %",
-         fmt::format("{:+.1f} % ({:+.1f} % by medians)", percent, 100 * (row.by_median - 1)),
+         fmt::format("{:+.2f} % ({:+.2f} % by medians)", percent, 100 * (row.by_median - 1)),
          std::abs(percent) <= 1});
   }
 }

@@ -15,6 +15,7 @@ constexpr std::uint64_t kGatherSamplesPerThread = 1 << 23;
 
 std::vector<Contestant> contestants_of(std::vector<OwnMethod>& methods, FrameCaster& caster) {
   std::vector<Contestant> contestants;
+  contestants.reserve(methods.size());
   for (OwnMethod& method : methods)
     contestants.push_back({"", [&] { return method.frame_seconds(caster); }});
   return contestants;
@@ -33,7 +34,7 @@ RatioRow ratio_row(const std::string& name, const std::string& base, const std::
 /// frames, directly one after the other.
 RatioRow off_row(const FeatureCase& off, OwnMethod& base, OwnMethod& method, FrameCaster& caster,
                  const ErrorBenchSettings& settings) {
-  const int rounds = settings.quick ? settings.repeats : 5 * settings.repeats;
+  const int rounds = settings.quick ? settings.repeats : 10 * settings.repeats;
   std::vector<Contestant> pair{{off.base, [&] { return base.frame_seconds(caster); }},
                                {off.name, [&] { return method.frame_seconds(caster); }}};
   run_rounds(pair, rounds, in_phase(settings, off.name));
@@ -110,6 +111,7 @@ void measure_instruction_set(const std::string& name, const Subject& subject,
   force_instruction_set(name);
   std::vector<OwnEntry> entries = own_entries(subject, {0});
   std::vector<Contestant> contestants;
+  contestants.reserve(entries.size() + 1);
   for (OwnEntry& entry : entries)
     contestants.push_back({"", [&] { return entry.method.frame_seconds(caster); }});
   contestants.push_back(gather_contestant(subject, settings.threads));
@@ -141,6 +143,7 @@ std::vector<RatioRow> measure_features(const Subject& subject, const ErrorBenchS
                                        FrameCaster& caster) {
   const std::vector<FeatureCase> cases = feature_cases(subject);
   std::vector<OwnMethod> methods;
+  methods.reserve(cases.size());
   for (const FeatureCase& each : cases) methods.emplace_back(each.scene, subject.volume);
   std::vector<Contestant> contestants = contestants_of(methods, caster);
   run_rounds(contestants, settings.repeats, in_phase(settings, "features"));

@@ -160,7 +160,7 @@ Json answer_of(ChildProcess& process, const Json& request) {
   for (;;) {
     const std::string line = process.receive(kPatience);
     if (!line.starts_with('{')) continue;  // what a library has to say
-    const Json answer = Json::parse(line, nullptr, false);
+    Json answer = Json::parse(line, nullptr, false);
     if (answer.is_discarded()) throw PeerFailure("answers something else than JSON");
     return answer;
   }
@@ -184,8 +184,8 @@ double seconds_of_process(const std::vector<std::string>& command,
 
 std::filesystem::path peer_script(const std::string& name) {
   for (const char* folder :
-       {GOLDTHREAD_INSTALLED_PEERS, GOLDTHREAD_SOURCE_DIR "/bench/error/peers"}) {
-    const auto file = std::filesystem::path(folder) / name;
+       {GOLDTHREAD_SOURCE_DIR "/bench/error/peers", GOLDTHREAD_INSTALLED_PEERS}) {
+    auto file = std::filesystem::path(folder) / name;
     if (std::filesystem::exists(file)) return file;
   }
   throw PeerFailure("its script " + name + " is not installed");
@@ -212,7 +212,7 @@ std::filesystem::path PeerJob::variant(Look look, double step_mm) const {
   Json job = Json::parse(text_);
   job["look"] = name_of(look);
   job["step"] = step_mm;
-  const auto file = folder_ / "first_picture_job.json";
+  auto file = folder_ / "first_picture_job.json";
   write_text(file, job.dump(1));
   return file;
 }

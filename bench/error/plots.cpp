@@ -58,18 +58,20 @@ std::string quoted(const std::string& text) {
   return result + "'";
 }
 
+/// Errors at roundoff are drawn here, or they would press all others into a corner.
+constexpr double kLeastDrawn = 1e-3;
+
 using Point = std::pair<double, double> (*)(const MethodRow&);
 
 std::pair<double, double> time_and_error(const MethodRow& row) {
-  return {1e3 * row.seconds.median, row.error.rms};
+  return {1e3 * row.seconds.median, std::max(row.error.rms, kLeastDrawn)};
 }
 std::pair<double, double> step_and_error(const MethodRow& row) {
-  return {row.step_voxels, row.error.rms};
+  return {row.step_voxels, std::max(row.error.rms, kLeastDrawn)};
 }
 
-bool is_drawable(const std::pair<double, double>& point) {
-  return point.first > 0 && point.second > 0;
-}
+/// On a logarithmic axis.
+bool is_drawable(const std::pair<double, double>& point) { return point.first > 0; }
 
 /// A curve for each program and look, through its rows with a step of their own. A program that was
 /// only measured at its default step gets a point, where `with_defaults`.
@@ -148,7 +150,8 @@ constexpr const char* kFrame =
 constexpr const char* kLogLog =
     "set logscale xy\n"
     "set format y '%g'\n"
-    "set ylabel 'RMS error in 1/255'\n";
+    "set yrange [7e-4:*]\n"
+    "set ylabel 'RMS error in 1/255 (what is below 0.001 is drawn there)'\n";
 
 std::string subtitle_of(const Report& report) {
   return fmt::format("{}×{} pixels, {} threads", report.size.width, report.size.height,

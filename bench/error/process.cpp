@@ -62,6 +62,7 @@ ChildProcess::ChildProcess(const std::vector<std::string>& command, std::filesys
   std::vector<std::string> words{"setpriv", "--pdeathsig", "TERM", "--"};
   words.insert(words.end(), command.begin(), command.end());
   std::vector<char*> arguments;
+  arguments.reserve(words.size() + 1);
   for (std::string& word : words) arguments.push_back(word.data());
   arguments.push_back(nullptr);
   const int error = posix_spawnp(&pid_, arguments[0], &settings.actions, &settings.attributes,

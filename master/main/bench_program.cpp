@@ -19,7 +19,7 @@ namespace {
 
 /// The folder, made where it is missing; whether it takes a report is found before the work.
 std::filesystem::path report_folder(const std::string& name) {
-  const std::filesystem::path folder = std::filesystem::absolute(name);
+  std::filesystem::path folder = std::filesystem::absolute(name);
   std::error_code error;
   std::filesystem::create_directories(folder, error);
   if (error) {

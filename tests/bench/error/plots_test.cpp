@@ -50,11 +50,18 @@ TEST(BenchPlots, ErrorAgainstStepHasAGuideOfSlopeTwo) {
   EXPECT_NEAR(order_between(coarse_step, coarse_error, fine_step, fine_error), 2, 1e-6);
 }
 
-TEST(BenchPlots, WhatALogarithmCannotShowIsLeftOut) {
+TEST(BenchPlots, ErrorsAtRoundoffAreDrawnAtTheLowerEnd) {
   Report report = test::example_report();
   for (MethodRow& row : report.methods)
     if (row.look == Look::kMip && row.program == "Goldthread") row.error.rms = 0;
-  EXPECT_THAT(script(report, "error-time"), Not(HasSubstr("'Goldthread, mip'")));
+  EXPECT_THAT(script(report, "error-time"), HasSubstr("<< END\n10 0.001\n5 0.001\nEND\n"));
+}
+
+TEST(BenchPlots, WhatTookNoTimeIsLeftOut) {
+  Report report = test::example_report();
+  for (MethodRow& row : report.methods)
+    if (row.look == Look::kMip && row.program == "VTK") row.seconds = {};
+  EXPECT_THAT(script(report, "error-time"), Not(HasSubstr("'VTK, mip'")));
 }
 
 TEST(BenchPlots, ParaViewIsAPointAtItsDefault) {
