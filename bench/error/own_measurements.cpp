@@ -25,7 +25,7 @@ RatioRow ratio_row(const std::string& name, const std::string& base, const std::
                    const Contestant& one, const Contestant* against) {
   RatioRow row{name, base, kernel, summarize(one.seconds)};
   if (against == nullptr) return row;
-  row.by_median = ratio_of_medians(one, *against);
+  row.by_rounds = median_ratio(one, *against);
   row.by_minimum = ratio_of_minima(one, *against);
   return row;
 }

@@ -53,9 +53,9 @@ struct RatioRow {
   std::string base;
   std::string kernel;
   Seconds seconds;
-  double by_median = 1;
-  double by_minimum = 1;
-  bool off = false;  ///< has no effect on the picture
+  double by_rounds = 1;   ///< the median of the rounds' ratios
+  double by_minimum = 1;  ///< of the quickest frames
+  bool off = false;       ///< has no effect on the picture
 };
 
 struct PeerRow {

@@ -53,7 +53,7 @@ Json json_of(const RatioRow& row) {
   Json json{{"name", row.name}, {"kernel", row.kernel}, {"seconds", json_of(row.seconds)}};
   if (row.base.empty()) return json;
   json["against"] = row.base;
-  json["ratioOfMedians"] = row.by_median;
+  json["medianRatio"] = row.by_rounds;
   json["ratioOfMinima"] = row.by_minimum;
   json["off"] = row.off;
   return json;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "bench/error/rounds.h"
 
+#include <algorithm>
 #include <chrono>
 
 #include "bench/error/process.h"
@@ -30,8 +31,10 @@ double seconds_of(const std::function<void()>& work) {
   return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 }
 
-double ratio_of_medians(const Contestant& one, const Contestant& base) {
-  return summarize(one.seconds).median / summarize(base.seconds).median;
+double median_ratio(const Contestant& one, const Contestant& base) {
+  std::vector<double> ratios(std::min(one.seconds.size(), base.seconds.size()));
+  for (std::size_t i = 0; i < ratios.size(); ++i) ratios[i] = one.seconds[i] / base.seconds[i];
+  return median(std::move(ratios));
 }
 
 double ratio_of_minima(const Contestant& one, const Contestant& base) {

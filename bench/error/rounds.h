@@ -29,8 +29,9 @@ void run_rounds(std::vector<Contestant>& contestants, int rounds,
 /// How long `work` takes.
 double seconds_of(const std::function<void()>& work);
 
-/// Two contestants' times, frame by frame: the ratio of medians and of minima.
-double ratio_of_medians(const Contestant& one, const Contestant& base);
+/// Two contestants' times against each other: the median of the rounds' ratios, which whatever
+/// falls on a whole round leaves as it is, and the ratio of the quickest frames.
+double median_ratio(const Contestant& one, const Contestant& base);
 double ratio_of_minima(const Contestant& one, const Contestant& base);
 
 /// A committed scene of ours that can be rendered again and again.

@@ -57,7 +57,7 @@ inline Report example_report() {
                      {"uint16", "uint8", "dvr uint16", {0.011, 0.011, 9}, 1.1, 1.1},
                      {"float32", "uint8", "dvr float32", {0.012, 0.012, 9}, 1.2, 1.2}};
   report.features = {{"dvr, unlit", "", "dvr", {0.01, 0.01, 9}},
-                     {"off: lights", "dvr, unlit", "dvr", {0.01, 0.01, 9}, 1.02, 1.001, true}};
+                     {"off: lights", "dvr, unlit", "dvr", {0.01, 0.01, 9}, 1.001, 1.02, true}};
   report.gathers = {{"AVX2", {0.01, 0.01, 9}, 4'400'000}};
   report.memory = {1000, 1200, 50};
   report.peers = {{"VTK", "9.1.0", ""}, {"ParaView", "", "pvbatch is not installed"}};
