@@ -219,7 +219,7 @@ std::string samples_per_second(const Report& report) {
                            column > 2 ? ", \\\n     " : "", column,
                            column == 2 ? "#999999" : color_of(kLooks[std::size_t(column - 3)]));
   return kFrame + titled("Samples per second", subtitle_of(report)) +
-         "set style data histograms\nset style histogram clustered gap 1.5\n"
+         "set xtics noenhanced\nset style data histograms\nset style histogram clustered gap 1.5\n"
          "set style fill solid 0.9 noborder\nset boxwidth 0.92\nset yrange [0:*]\n"
          "unset grid\nset grid ytics lt 1 lc rgb '#dddddd' lw 0.5\n"
          "set ylabel 'million samples per second'\n" +
