@@ -26,8 +26,7 @@ HWY_INLINE CellPlace locate(const Floats3& position) {
   const Ints x = truncated(position.x);
   const Ints y = truncated(position.y);
   const Ints z = truncated(position.z);
-  const Ints one = hn::Set(kInts, 1);
-  return {{hn::Add(x, one), hn::Add(y, one), hn::Add(z, one)},
+  return {{x, y, z},
           hn::Sub(position.x, hn::ConvertTo(kFloats, x)),
           hn::Sub(position.y, hn::ConvertTo(kFloats, y)),
           hn::Sub(position.z, hn::ConvertTo(kFloats, z))};
@@ -40,7 +39,8 @@ class Field {
   /// Integers are always finite.
   static constexpr bool kMayBeInfinite = kStorage == Storage::kFloat32;
 
-  HWY_INLINE explicit Field(const FieldLayout& layout) : window_(layout) {}
+  HWY_INLINE explicit Field(const FieldLayout& layout)
+      : window_(layout), wide_window_(layout), byte_mask_(hn::Set(kInts, unknown(255))) {}
 
   // The usual case, all lanes in one window, must not depend on which lanes these are: they follow
   // from the sample before, and the next one could not be begun before that is known.
@@ -56,16 +56,29 @@ class Field {
     return result;
   }
 
+#if HWY_TARGET != HWY_SCALAR
+  static constexpr auto& kBeamEdges = Window<0>::kBeamEdges;
+
+  /// The values at the middles of kCount segments from `first` on, of a beam that is narrow there.
+  template <int kCount>
+  HWY_INLINE void values(const Beam& beam, float first, const CellPlace (&places)[kCount],
+                         FloatMask lanes, Floats (&results)[kCount]) {
+    window_.lie(beam, first, first + float(kCount - 1));
+    GOLDTHREAD_UNROLL
+    for (int i = 0; i < kCount; ++i) results[i] = value_in_window(places[i], lanes);
+  }
+#endif
+
   /// The eight voxels around `place`, x fastest, then y, then z.
   HWY_INLINE void cell(const CellPlace& place, FloatMask lanes, Floats (&corners)[8]) {
     if (window_.reaches(place.at, lanes)) {
-      this->template corners<0, 1, 0, 1, 0, 2>(window_.place(place.at), lanes, corners);
+      this->template corners<0, 1, 0, 1, 0, 2>(window_, window_.place(place.at), lanes, corners);
       return;
     }
     for (Floats& corner : corners) corner = hn::Zero(kFloats);
     window_.cover(place.at, lanes, [&](FloatMask covered) HWY_ATTR {
       Floats found[8];
-      this->template corners<0, 1, 0, 1, 0, 2>(window_.place(place.at), covered, found);
+      this->template corners<0, 1, 0, 1, 0, 2>(window_, window_.place(place.at), covered, found);
       for (int i = 0; i < 8; ++i) corners[i] = hn::IfThenElse(covered, found[i], corners[i]);
     });
   }
@@ -74,9 +87,9 @@ class Field {
   /// border's voxel is repeated. Equal voxels give exactly 0.
   HWY_INLINE Floats3 gradient(const CellPlace& place, FloatMask lanes) {
     static_assert(kGradients);
-    if (window_.reaches(place.at, lanes)) return gradient_in_window(place, lanes);
+    if (wide_window_.reaches(place.at, lanes)) return gradient_in_window(place, lanes);
     Floats3 result{hn::Zero(kFloats), hn::Zero(kFloats), hn::Zero(kFloats)};
-    window_.cover(place.at, lanes, [&](FloatMask covered) HWY_ATTR {
+    wide_window_.cover(place.at, lanes, [&](FloatMask covered) HWY_ATTR {
       const Floats3 found = gradient_in_window(place, covered);
       result = {hn::IfThenElse(covered, found.x, result.x),
                 hn::IfThenElse(covered, found.y, result.y),
@@ -96,29 +109,23 @@ class Field {
  private:
   static constexpr int kPlanes =
       kStorage == Storage::kUInt8 ? 1 : (kStorage == Storage::kUInt16 ? 2 : 4);
-  using FieldWindow = Window<kGradients ? 1 : 0>;
 
   /// Byte kByte of each lane, shifted to byte kTo, the rest 0.
   template <int kByte, int kTo>
-  static HWY_INLINE Ints move_byte(Bytes four) {
+  HWY_INLINE Ints move_byte(Bytes four) const {
     const auto word = hn::BitCast(kUnsigned, four);
     if constexpr (kByte == 3) {
       const auto alone = hn::ShiftRight<24>(word);
       return hn::BitCast(kInts, hn::ShiftLeft<8 * kTo>(alone));
-    } else if constexpr (kByte == kTo) {
-      return hn::BitCast(kInts, hn::And(word, hn::Set(kUnsigned, 255U << (8 * kTo))));
-    } else if constexpr (kByte > kTo) {
-      const auto there = hn::ShiftRight<8 * (kByte - kTo)>(word);
-      return hn::BitCast(kInts, hn::And(there, hn::Set(kUnsigned, 255U << (8 * kTo))));
     } else {
-      const auto there = hn::ShiftLeft<8 * (kTo - kByte)>(word);
-      return hn::BitCast(kInts, hn::And(there, hn::Set(kUnsigned, 255U << (8 * kTo))));
+      const Ints alone = hn::And(hn::BitCast(kInts, hn::ShiftRight<8 * kByte>(word)), byte_mask_);
+      return hn::ShiftLeft<8 * kTo>(alone);
     }
   }
 
   /// Voxel kByte of each lane as a number, from its bytes in the planes.
   template <int kByte>
-  static HWY_INLINE Floats number(const Bytes (&planes)[kPlanes]) {
+  HWY_INLINE Floats number(const Bytes (&planes)[kPlanes]) const {
     if constexpr (kStorage == Storage::kUInt8) {
       return hn::ConvertTo(kFloats, move_byte<kByte, 0>(planes[0]));
     } else if constexpr (kStorage == Storage::kUInt16) {
@@ -132,12 +139,14 @@ class Field {
   }
 
   /// Of kCount slices the four voxels of Window::take(), as numbers.
-  template <int kX0, int kX1, int kY0, int kY1, int kFirstZ, int kCount>
-  HWY_INLINE void corners(const typename FieldWindow::Place& place, FloatMask lanes,
-                          Floats (&numbers)[4 * kCount]) const {
+  template <int kX0, int kX1, int kY0, int kY1, int kFirstZ, int kCount, class AnyWindow>
+  HWY_INLINE void corners(const AnyWindow& window, const typename AnyWindow::Place& place,
+                          FloatMask lanes, Floats (&numbers)[4 * kCount]) const {
     Bytes bytes[kPlanes][kCount];
+    GOLDTHREAD_UNROLL
     for (int plane = 0; plane < kPlanes; ++plane)
-      window_.template take<kX0, kX1, kY0, kY1, kFirstZ, kCount>(place, lanes, plane, bytes[plane]);
+      window.template take<kX0, kX1, kY0, kY1, kFirstZ, kCount>(place, lanes, plane, bytes[plane]);
+    GOLDTHREAD_UNROLL
     for (int i = 0; i < kCount; ++i) {
       Bytes of_slice[kPlanes];
       for (int plane = 0; plane < kPlanes; ++plane) of_slice[plane] = bytes[plane][i];
@@ -150,7 +159,7 @@ class Field {
 
   HWY_INLINE Floats value_in_window(const CellPlace& place, FloatMask lanes) const {
     Floats found[8];
-    this->template corners<0, 1, 0, 1, 0, 2>(window_.place(place.at), lanes, found);
+    this->template corners<0, 1, 0, 1, 0, 2>(window_, window_.place(place.at), lanes, found);
     return trilinear(found, place);
   }
 
@@ -161,13 +170,13 @@ class Field {
   }
 
   HWY_INLINE Floats3 gradient_in_window(const CellPlace& place, FloatMask lanes) const {
-    const auto in_window = window_.place(place.at);
+    const auto in_window = wide_window_.place(place.at);
     const Floats fx = place.fx, fy = place.fy, fz = place.fz;
     // The cell and what lies before and behind it along each axis: [slice][y][x].
     Floats core[16], beside_x[8], beside_y[8];
-    this->template corners<0, 1, 0, 1, -1, 4>(in_window, lanes, core);
-    this->template corners<-1, 2, 0, 1, 0, 2>(in_window, lanes, beside_x);
-    this->template corners<0, 1, -1, 2, 0, 2>(in_window, lanes, beside_y);
+    this->template corners<0, 1, 0, 1, -1, 4>(wide_window_, in_window, lanes, core);
+    this->template corners<-1, 2, 0, 1, 0, 2>(wide_window_, in_window, lanes, beside_x);
+    this->template corners<0, 1, -1, 2, 0, 2>(wide_window_, in_window, lanes, beside_y);
     Floats slope_x[4], slope_y[4], slope_z[4];
     for (int z = 0; z < 2; ++z) {
       const Floats* cell = core + 4 * (z + 1);
@@ -186,7 +195,9 @@ class Field {
     return {bilinear(slope_x, fy, fz), bilinear(slope_y, fx, fz), bilinear(slope_z, fx, fy)};
   }
 
-  FieldWindow window_;
+  Window<0> window_;
+  Window<1> wide_window_;  ///< for gradients
+  Ints byte_mask_;
 };
 
 }  // namespace goldthread::HWY_NAMESPACE

@@ -26,18 +26,21 @@ class GreatestValue {
         field_(arguments.scene.field),
         rays_(rays),
         walk_(arguments.scene, rays),
-        index_(hn::Neg(rays.delay)) {}
+        steps_(rays) {}
 
   HWY_INLINE std::uint64_t run() {
-    const FloatMask hit = hn::Gt(rays_.segments, hn::Zero(kFloats));
+    const FloatMask hit = rays_.hit();
     consider(hit, rays_.first);
     consider(hit, rays_.last);
-    alive_ = hit;
-    while (next()) {
-      const Segment segment = segment_of(rays_, index_);
-      consider(hn::And(alive_, hn::Ge(index_, dark_until_)), middle(segment.begin, segment.end));
-      index_ = hn::Add(index_, hn::Set(kFloats, 1.0F));
-      alive_ = hn::And(alive_, hn::Lt(index_, rays_.segments));
+    for (int known = next_promising(); known > 0; known = next_promising()) {
+      // What to beat is asked one run late, so that nothing waits for the last sample.
+      const Floats before = best_;
+      for (; known > 0 && !steps_.ended(); --known) {
+        const Segment segment = segment_of(rays_, steps_.index());
+        consider(steps_.inside(), middle(segment.begin, segment.end));
+        steps_.advance(1);
+      }
+      to_beat_ = before;
     }
     refine(hit);
     return samples_;
@@ -63,28 +66,29 @@ class GreatestValue {
     samples_ += hn::CountTrue(kFloats, active);
   }
 
-  /// Goes on to the next segment in which any ray may find more; false when all have ended. What a
-  /// ray takes along in the company of others can only be less than the best: never more.
-  HWY_INLINE bool next() {
-    while (true) {
-      const FloatMask unsure = hn::And(alive_, hn::Ge(index_, known_until_));
-      if (!hn::AllFalse(kFloats, unsure)) look(unsure);
-      if (!hn::AllFalse(kFloats, hn::And(alive_, hn::Ge(index_, dark_until_)))) return true;
-      if (hn::AllFalse(kFloats, alive_)) return false;
-      const Floats far = hn::Set(kFloats, 1e30F);
-      const Floats way = hn::IfThenElse(alive_, hn::Sub(dark_until_, index_), far);
-      index_ = hn::Add(index_, hn::MinOfLanes(kFloats, way));
-      alive_ = hn::And(alive_, hn::Lt(index_, rays_.segments));
+  /// Goes on to the next step in which any ray may find more. Returns how many steps to take
+  /// before the cells are asked again, 0 when all rays have ended. What a ray takes along in the
+  /// company of others is never more than its greatest value.
+  HWY_INLINE int next_promising() {
+    while (!steps_.ended()) {
+      const Floats index = steps_.index();
+      const Segment segment = segment_of(rays_, index);
+      const Floats at = middle(segment.begin, segment.end);
+      const auto cube = walk_.look_for_more(rays_.at(at, scene_.field.upper), at, to_beat_);
+      const FloatMask promising = hn::And(steps_.inside(), cube.visible);
+      const Floats known = hn::Sub(segment_after(index, cube.exit), index);
+      if (!hn::AllFalse(kFloats, promising)) {
+        const float sum =
+            hn::GetLane(hn::SumOfLanes(kFloats, hn::IfThenElseZero(promising, known)));
+        return std::max(1, int(sum / float(hn::CountTrue(kFloats, promising))));
+      }
+      const Floats far = hn::Set(kFloats, 1e6F);
+      const Floats dull = hn::IfThenElse(hn::Lt(index, hn::Zero(kFloats)), hn::Neg(index), known);
+      const FloatMask counts = hn::And(rays_.hit(), hn::Lt(index, rays_.segments));
+      const Floats way = hn::MinOfLanes(kFloats, hn::IfThenElse(counts, dull, far));
+      steps_.advance(hn::GetLane(way));
     }
-  }
-
-  HWY_INLINE void look(FloatMask unsure) {
-    const Segment segment = segment_of(rays_, index_);
-    const Floats steps = middle(segment.begin, segment.end);
-    const auto cube = walk_.look_for_more(rays_.at(steps, scene_.field.upper), steps, best_);
-    const Floats until = segment_after(index_, cube.exit);
-    known_until_ = hn::IfThenElse(unsure, until, known_until_);
-    dark_until_ = hn::IfThenElse(hn::AndNot(cube.visible, unsure), until, dark_until_);
+    return 0;
   }
 
   /// Samples densely about the best one, twice.
@@ -108,10 +112,8 @@ class GreatestValue {
   const Rays& rays_;
   CellWalk walk_;
 
-  Floats index_;
-  FloatMask alive_ = hn::Gt(hn::Zero(kFloats), hn::Zero(kFloats));
-  Floats known_until_ = hn::Zero(kFloats);
-  Floats dark_until_ = hn::Zero(kFloats);
+  PacketSteps steps_;
+  Floats to_beat_ = hn::Set(kFloats, -std::numeric_limits<float>::infinity());
   Floats best_ = hn::Set(kFloats, -std::numeric_limits<float>::infinity());
   Floats best_at_ = hn::Zero(kFloats);
   std::uint64_t samples_ = 0;

@@ -19,7 +19,8 @@ struct FieldLayout {
   const std::uint8_t* voxels = nullptr;
   std::int32_t size[3] = {0, 0, 0};  ///< voxels, each at least 2
   float upper[3] = {0, 0, 0};        ///< the greatest float below size − 1: positions end here
-  std::int32_t last_origin[3] = {0, 0, 0};  ///< greatest stored coordinates where a window begins
+  /// Greatest stored coordinates where a window begins; and nothing, for vectors of four.
+  alignas(16) std::int32_t last_origin[4] = {0, 0, 0, 0};
   std::int64_t plane_bytes = 0, column_bytes = 0, row_bytes = 0;
 };
 

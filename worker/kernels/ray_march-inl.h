@@ -30,17 +30,30 @@ class RayMarch {
         walk_(arguments.scene, rays_),
         shading_(arguments.scene.phong, arguments.view.lights, rays.direction),
         step_mm_(float(arguments.scene.step_mm)),
-        index_(hn::Neg(rays.delay)),
-        alive_(hn::Gt(rays.segments, hn::Zero(kFloats))) {}
+        steps_(rays),
+#if HWY_TARGET != HWY_SCALAR
+        beam_(rays),
+#endif
+        alive_(rays.hit()),
+        wanted_(alive_),
+        present_(alive_) {
+  }
 
   /// Returns how many samples were taken.
   HWY_INLINE std::uint64_t run() {
-    for (int steps = prepare(); steps > 0; steps = prepare()) {
-      for (; steps > 0 && !hn::AllFalse(kFloats, alive_); --steps) {
-        add_segment();
-        index_ = hn::Add(index_, hn::Set(kFloats, 1.0F));
-        alive_ = hn::And(alive_, hn::And(hn::Lt(index_, rays_.segments), sum_.is_open()));
+    while (!hn::AllFalse(kFloats, alive_)) {
+      // Which rays have ended is asked one run late: to know it now would mean to wait for the last
+      // sample's opacity.
+      const FloatMask before = alive_;
+      const int known = next_visible();
+      if (known == 0) break;
+      if (const int whole = steps_.whole(); whole > 0) {
+        present_ = rays_.hit();
+        take_whole(std::min(known, whole));
+      } else {
+        take_parts(std::min(known, steps_.until_whole()));
       }
+      wanted_ = before;
     }
     return samples_;
   }
@@ -48,70 +61,114 @@ class RayMarch {
   HWY_INLINE const Accumulation& sum() const { return sum_; }
 
  private:
-  /// Goes on to the next segment in which any ray may see something. Returns how many segments to
-  /// take before the cells are asked again, 0 when all rays have ended.
-  HWY_INLINE int prepare() {
-    while (!hn::AllFalse(kFloats, alive_)) {
-      const FloatMask unsure = hn::And(alive_, hn::Ge(index_, known_until_));
-      if (!hn::AllFalse(kFloats, unsure)) look(unsure);
-      const FloatMask light = hn::And(alive_, hn::Ge(index_, dark_until_));
-      if (!hn::AllFalse(kFloats, light)) return steps_known(light);
-      leap();
+  /// Goes on to the next step in which any ray may see something. Returns how many steps to take
+  /// before the cells are asked again: as many as is known on average, for what is sampled beyond
+  /// adds exactly 0 if it is empty. 0 when all rays have ended.
+  HWY_INLINE int next_visible() {
+    while (!steps_.ended()) {
+      const Floats index = steps_.index();
+      const Segment segment = segment_of(rays_, index);
+      const Floats middle_of = middle(segment.begin, segment.end);
+      const auto cube = walk_.look(rays_.at(middle_of, scene_.field.upper), middle_of);
+      const FloatMask inside = hn::And(wanted_, steps_.inside());
+      const FloatMask visible = hn::And(inside, cube.visible);
+      const Floats known = hn::Sub(segment_after(index, cube.exit), index);
+      if (!hn::AllFalse(kFloats, visible)) {
+        const float sum = hn::GetLane(hn::SumOfLanes(kFloats, hn::IfThenElseZero(visible, known)));
+        return std::max(1, int(sum / float(hn::CountTrue(kFloats, visible))));
+      }
+      // All in the dark: on to where the first ray leaves it, or enters the volume.
+      const Floats far = hn::Set(kFloats, 1e6F);
+      const Floats dark = hn::IfThenElse(hn::Lt(index, hn::Zero(kFloats)), hn::Neg(index), known);
+      const FloatMask counts = hn::And(wanted_, hn::Lt(index, rays_.segments));
+      const Floats way = hn::MinOfLanes(kFloats, hn::IfThenElse(counts, dark, far));
+      steps_.advance(hn::GetLane(way));
     }
     return 0;
   }
 
-  /// On average. What is sampled beyond what a ray knows adds exactly 0 if it is empty, so that
-  /// rays may wait for each other.
-  HWY_INLINE int steps_known(FloatMask light) const {
-    const Floats known = hn::IfThenElseZero(light, hn::Sub(known_until_, index_));
-    const float sum = hn::GetLane(hn::SumOfLanes(kFloats, known));
-    return std::max(1, int(sum / float(hn::CountTrue(kFloats, light))));
-  }
-
-  /// Asks the cells of `unsure` rays until where they know what comes.
-  HWY_INLINE void look(FloatMask unsure) {
-    const Segment segment = segment_of(rays_, index_);
-    const Floats steps = middle(segment.begin, segment.end);
-    const auto cube = walk_.look(rays_.at(steps, scene_.field.upper), steps);
-    const Floats until = segment_after(index_, cube.exit);
-    known_until_ = hn::IfThenElse(unsure, until, known_until_);
-    dark_until_ = hn::IfThenElse(hn::AndNot(cube.visible, unsure), until, dark_until_);
-  }
-
-  /// All rays are in the dark: on to where the first of them leaves it.
-  HWY_INLINE void leap() {
-    const Floats far = hn::Set(kFloats, 1e30F);
-    const Floats way = hn::IfThenElse(alive_, hn::Sub(dark_until_, index_), far);
-    index_ = hn::Add(index_, hn::MinOfLanes(kFloats, way));
-    alive_ = hn::And(alive_, hn::Lt(index_, rays_.segments));
-  }
-
-  /// Emission and absorption of each ray's next segment, from the field in its middle. Nothing but
-  /// the sums waits for the opacity of the segments before: these are far behind when the next
-  /// samples are begun.
-  HWY_INLINE void add_segment() {
-    const Segment segment = segment_of(rays_, index_);
-    const Floats3 position = rays_.at(middle(segment.begin, segment.end), scene_.field.upper);
-    const CellPlace place = locate(position);
-    const FloatMask present =
-        hn::And(hn::Ge(index_, hn::Zero(kFloats)), hn::Lt(index_, rays_.segments));
-    const Floats value = field_.value(place, present);
-    samples_ += hn::CountTrue(kFloats, alive_);
-    FloatMask seen = hn::And(alive_, present);
-    Floats usable = value;
-    if constexpr (FieldType::kMayBeInfinite) {
-      const FloatMask finite = is_finite(value);
-      seen = hn::And(seen, finite);
-      usable = hn::IfThenElseZero(finite, value);
+  /// The next steps, in which all rays have whole segments.
+  HWY_INLINE void take_whole(int steps) {
+#if HWY_TARGET != HWY_SCALAR
+    // Several samples at a time: what they wait for is not each other.
+    const float first = steps_.step(), last = first + float(steps - 1);
+    if (steps >= kTogether && beam_.is_narrow(first, last, kTogether, FieldType::kBeamEdges)) {
+      for (; steps >= kTogether && !hn::AllFalse(kFloats, alive_); steps -= kTogether)
+        add_whole<kTogether>();
     }
-    Look look = look_at(scene_.transfer, usable, hn::Sub(segment.end, segment.begin), step_mm_);
+#endif
+    for (; steps > 0 && !hn::AllFalse(kFloats, alive_); --steps) {
+      const Floats3 position = rays_.at(hn::Add(steps_.index(), hn::Set(kFloats, 0.5F)));
+      const CellPlace place = locate(position);
+      Floats value = field_.value(place, present_);
+      const FloatMask finite = take_finite(value);
+      add(hn::And(present_, finite), place, position, look_at(scene_.transfer, value));
+      steps_.advance(1);
+    }
+  }
+  static constexpr int kTogether = 3;
+
+#if HWY_TARGET != HWY_SCALAR
+  template <int kCount>
+  HWY_INLINE void add_whole() {
+    CellPlace places[kCount];
+    Floats3 positions[kCount];
+    GOLDTHREAD_UNROLL
+    for (int i = 0; i < kCount; ++i) {
+      positions[i] = rays_.at(hn::Add(steps_.index(), hn::Set(kFloats, 0.5F + float(i))));
+      places[i] = locate(positions[i]);
+    }
+    Floats values[kCount];
+    field_.values(beam_, steps_.step(), places, present_, values);
+    FloatMask finite[kCount];
+    Look looks[kCount];
+    GOLDTHREAD_UNROLL
+    for (int i = 0; i < kCount; ++i) {
+      finite[i] = take_finite(values[i]);
+      looks[i] = look_at(scene_.transfer, values[i]);
+    }
+    GOLDTHREAD_UNROLL
+    for (int i = 0; i < kCount; ++i)
+      add(hn::And(present_, finite[i]), places[i], positions[i], looks[i]);
+    steps_.advance(float(kCount));
+  }
+#endif
+
+  /// The next steps, with the part of its segment that each ray has inside the volume.
+  HWY_INLINE void take_parts(int steps) {
+    for (; steps > 0 && !hn::AllFalse(kFloats, alive_); --steps) {
+      const Segment segment = segment_of(rays_, steps_.index());
+      const Floats3 position = rays_.at(middle(segment.begin, segment.end));
+      const CellPlace place = locate(position);
+      const FloatMask inside = steps_.inside();
+      Floats value = field_.value(place, inside);
+      const FloatMask finite = take_finite(value);
+      add(hn::And(inside, finite), place, position,
+          look_at(scene_.transfer, value, hn::Sub(segment.end, segment.begin), step_mm_));
+      steps_.advance(1);
+    }
+  }
+
+  /// Nothing but the sums waits for the opacity of the samples before: these are far behind when
+  /// the next samples are begun.
+  HWY_INLINE void add(FloatMask seen, const CellPlace& place, const Floats3& position, Look look) {
+    samples_ += hn::CountTrue(kFloats, alive_);
+    seen = hn::And(seen, alive_);
     if constexpr (kShading) {
       const FloatMask visible = hn::And(seen, hn::Gt(look.opacity, hn::Zero(kFloats)));
       if (hn::AllFalse(kFloats, visible)) return;
       look.color = shading_.shade(look.color, field_.gradient(place, visible), position);
     }
     sum_.add(look.color, hn::IfThenElseZero(seen, look.opacity));
+    alive_ = hn::And(alive_, sum_.is_open());
+  }
+
+  /// Where a value is finite; the others become 0.
+  static HWY_INLINE FloatMask take_finite(Floats& value) {
+    if constexpr (!FieldType::kMayBeInfinite) return hn::Eq(hn::Zero(kFloats), hn::Zero(kFloats));
+    const FloatMask finite = is_finite(value);
+    value = hn::IfThenElseZero(finite, value);
+    return finite;
   }
 
   using FieldType = Field<kStorage, kShading>;
@@ -123,10 +180,13 @@ class RayMarch {
   PhongShading shading_;
   float step_mm_;
 
-  Floats index_;  ///< the segment that comes next, of each ray; negative before its first
-  FloatMask alive_;
-  Floats known_until_ = hn::Zero(kFloats);  ///< from this segment on the cells must be asked
-  Floats dark_until_ = hn::Zero(kFloats);   ///< before this segment nothing can be seen
+  PacketSteps steps_;
+#if HWY_TARGET != HWY_SCALAR
+  Beam beam_;
+#endif
+  FloatMask alive_;    ///< rays whose transmittance has not run out
+  FloatMask wanted_;   ///< those of the run before
+  FloatMask present_;  ///< rays inside the volume
   Accumulation sum_;
   std::uint64_t samples_ = 0;
 };

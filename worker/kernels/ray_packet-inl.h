@@ -151,7 +151,15 @@ struct Rays {
         segments(hn::Load(kFloats, rays.segments)),
         delay(hn::Load(kFloats, rays.delay)) {}
 
-  /// The position after `steps`, never by adding up; rounding is kept from leaving the volume.
+  HWY_INLINE FloatMask hit() const { return hn::Gt(segments, hn::Zero(kFloats)); }
+
+  /// The position after `steps`, never by adding up.
+  HWY_INLINE Floats3 at(Floats steps) const {
+    return {hn::MulAdd(steps, direction.x, start.x), hn::MulAdd(steps, direction.y, start.y),
+            hn::MulAdd(steps, direction.z, start.z)};
+  }
+
+  /// The same, kept from leaving the volume by rounding.
   HWY_INLINE Floats3 at(Floats steps, const float* upper) const {
     const auto inside = [&](Floats v, float limit) HWY_ATTR {
       return hn::Min(hn::Max(v, hn::Zero(kFloats)), hn::Set(kFloats, limit));
@@ -161,6 +169,108 @@ struct Rays {
             inside(hn::MulAdd(steps, direction.z, start.z), upper[2])};
   }
 };
+
+/// Where a packet is whose rays go in step.
+class PacketSteps {
+ public:
+  HWY_INLINE explicit PacketSteps(const Rays& rays) : rays_(rays), index_(hn::Neg(rays.delay)) {
+    const FloatMask hit = rays.hit();
+    const Floats from = hn::Add(hn::Ceil(rays.first), rays.delay);
+    const Floats until = hn::Add(hn::Floor(rays.last), rays.delay);
+    const Floats end = hn::Add(rays.segments, rays.delay);
+    whole_from_ = hn::GetLane(hn::MaxOfLanes(kFloats, hn::IfThenElseZero(hit, from)));
+    whole_until_ =
+        hn::GetLane(hn::MinOfLanes(kFloats, hn::IfThenElse(hit, until, hn::Set(kFloats, 1e9F))));
+    end_ = hn::GetLane(hn::MaxOfLanes(kFloats, hn::IfThenElseZero(hit, end)));
+  }
+
+  /// The segment that comes next, of each ray; negative before its first.
+  HWY_INLINE Floats index() const { return index_; }
+  /// Rays that have such a segment.
+  HWY_INLINE FloatMask inside() const {
+    return hn::And(hn::Ge(index_, hn::Zero(kFloats)), hn::Lt(index_, rays_.segments));
+  }
+  /// Counted from the packet's first segment.
+  HWY_INLINE float step() const { return step_; }
+  HWY_INLINE bool ended() const { return step_ >= end_; }
+  /// How many steps all rays that hit will have whole segments; 0 if not now.
+  HWY_INLINE int whole() const {
+    return step_ >= whole_from_ && step_ < whole_until_ ? int(whole_until_ - step_) : 0;
+  }
+  /// How many steps it takes until then, or until the packet ends.
+  HWY_INLINE int until_whole() const {
+    const bool comes = step_ < whole_from_ && whole_from_ < whole_until_;
+    return int((comes ? whole_from_ : end_) - step_);
+  }
+  HWY_INLINE void advance(float steps) {
+    step_ += steps;
+    index_ = hn::Add(index_, hn::Set(kFloats, steps));
+  }
+
+ private:
+  const Rays& rays_;
+  Floats index_;
+  float step_ = 0, whole_from_, whole_until_, end_;
+};
+
+#if HWY_TARGET != HWY_SCALAR
+/// x, y, z and nothing, of one point.
+using PointTag = hn::Simd<float, 4, 0>;
+using Point = hn::Vec<PointTag>;
+constexpr PointTag kPoint{};
+
+/// The box around all rays of a packet that go in step: where the voxels of their samples lie can
+/// be told from it long before the samples themselves are known.
+class Beam {
+ public:
+  HWY_INLINE explicit Beam(const Rays& rays) {
+    add(rays, rays.start.x, rays.direction.x, 0);
+    add(rays, rays.start.y, rays.direction.y, 1);
+    add(rays, rays.start.z, rays.direction.z, 2);
+  }
+
+  /// No sample of the middles of segments `first` … `last` lies below, along any axis.
+  HWY_INLINE Point lowest(float first, float last) const {
+    const Point low = hn::Load(kPoint, low_), change = hn::Load(kPoint, low_change_);
+    const Point begin = hn::MulAdd(hn::Set(kPoint, first + 0.5F), change, low);
+    const Point end = hn::MulAdd(hn::Set(kPoint, last + 0.5F), change, low);
+    return hn::Min(begin, end);
+  }
+
+  /// Whether all samples of any `together` successive segments from `first` to `last` lie in a box
+  /// of the given edges.
+  HWY_INLINE bool is_narrow(float first, float last, int together, const float (&edges)[3]) const {
+    for (int axis = 0; axis < 3; ++axis) {
+      const float width = high_[axis] - low_[axis];
+      const float change = high_change_[axis] - low_change_[axis];
+      const float widest = width + std::max(change * (first + 0.5F), change * (last + 0.5F));
+      const float way = std::max(std::abs(high_change_[axis]), std::abs(low_change_[axis]));
+      if (!(widest + float(together - 1) * way <= edges[axis])) return false;
+    }
+    return true;
+  }
+
+ private:
+  /// More than what rounding may move a sample by, in voxels.
+  static constexpr float kSlack = 2e-3F;
+
+  HWY_INLINE void add(const Rays& rays, Floats start, Floats direction, int axis) {
+    const FloatMask hit = rays.hit();
+    const Floats far = hn::Set(kFloats, 1e30F),
+                 at_zero = hn::NegMulAdd(rays.delay, direction, start);
+    const auto least = [&](Floats v) HWY_ATTR {
+      return hn::GetLane(hn::MinOfLanes(kFloats, hn::IfThenElse(hit, v, far)));
+    };
+    low_[axis] = least(at_zero) - kSlack;
+    low_change_[axis] = least(direction);
+    high_[axis] = -least(hn::Neg(at_zero)) + kSlack;
+    high_change_[axis] = -least(hn::Neg(direction));
+  }
+
+  alignas(16) float low_[4] = {}, low_change_[4] = {};  ///< at step 0, and per step
+  float high_[3], high_change_[3];
+};
+#endif
 
 /// What is needed to place a ray in a cell to the last digit.
 struct FineRays {

@@ -160,9 +160,7 @@ class SurfaceMarch {
   }
 
   static HWY_INLINE CellPlace cell_place(const Floats3& cell, const Floats3& fraction) {
-    const Ints one = hn::Set(kInts, 1);
-    return {{hn::Add(truncated(cell.x), one), hn::Add(truncated(cell.y), one),
-             hn::Add(truncated(cell.z), one)},
+    return {{truncated(cell.x), truncated(cell.y), truncated(cell.z)},
             fraction.x,
             fraction.y,
             fraction.z};

@@ -99,15 +99,14 @@ class SegmentPlace {
   HWY_INLINE SegmentPlace(const TransferSegments& segments, Floats value)
       : segments_(segments),
         index_(hn::IndicesFromVec(kFloats, segment_of(segments, value))),
-        way_(hn::Max(hn::Sub(value, coefficient(segments.start)), hn::Zero(kFloats))) {}
+        way_(hn::Sub(value, coefficient(segments.start))) {}
 
   /// Of a segment of full length.
   HWY_INLINE Floats opacity() const {
     const auto& c = segments_.opacity;
     const Floats high = hn::MulAdd(way_, coefficient(c[3]), coefficient(c[2]));
     const Floats low = hn::MulAdd(way_, coefficient(c[1]), coefficient(c[0]));
-    const Floats all = hn::MulAdd(hn::Mul(way_, way_), high, low);
-    return hn::Min(hn::Max(all, hn::Zero(kFloats)), hn::Set(kFloats, 1.0F));
+    return hn::Max(hn::MulAdd(hn::Mul(way_, way_), high, low), hn::Zero(kFloats));
   }
   HWY_INLINE Floats3 color() const { return {channel(0), channel(1), channel(2)}; }
 
@@ -130,13 +129,14 @@ class SegmentPlace {
                                  hn::Set(kFloats, segments.buckets_per_value));
     const Floats last = hn::Set(kFloats, float(TransferSegments::kBuckets - 1));
     const Ints bucket = truncated(hn::Min(hn::Max(exact, hn::Zero(kFloats)), last));
-    const Ints first =
-        hn::And(Ints{_mm512_permutexvar_epi8(bucket.raw, _mm512_loadu_si512(segments.bucket))},
-                hn::Set(kInts, 255));
+    const Ints first{_mm512_maskz_permutexvar_epi8(0x1111111111111111ULL, bucket.raw,
+                                                   _mm512_loadu_si512(segments.bucket))};
     const auto index = hn::IndicesFromVec(kFloats, first);
     const Floats end = hn::TableLookupLanes(hn::LoadU(kFloats, segments.end), index);
-    const auto behind = hn::RebindMask(kInts, hn::Ge(value, end));
-    return hn::Sub(first, hn::VecFromMask(kInts, behind));
+    // The sign of the difference, not a comparison: that would take the way through a mask.
+    const auto before = hn::BitCast(kUnsigned, hn::Sub(value, end));
+    const Ints is_before = hn::BitCast(kInts, hn::ShiftRight<31>(before));
+    return hn::Sub(hn::Add(first, hn::Set(kInts, 1)), is_before);
   }
 #endif
   HWY_INLINE Floats coefficient(const float* table) const {
@@ -171,36 +171,31 @@ HWY_INLINE Floats interpolated_column(const float* column, const TablePlace& pla
 #endif
 }
 
-/// Opacity and colour of a value.
+/// Opacity and colour of a value, which must be finite.
 struct Look {
   Floats opacity;
   Floats3 color;
 };
 
-/// Of segments of the given lengths in steps, at most 1. Nearly all are full ones, which need no
-/// exponential. `value` must be finite.
-HWY_INLINE Look look_at(const TransferTable& table, Floats value, Floats steps, float step_mm) {
-  const auto part = hn::Lt(steps, hn::Set(kFloats, 1.0F));
-  const bool all_full = hn::AllFalse(kFloats, part);
-  const auto of_part = [&](Floats full, Floats extinction) HWY_ATTR {
-    const Floats depth = hn::Mul(extinction, hn::Mul(steps, hn::Set(kFloats, step_mm)));
-    return hn::IfThenElse(part, one_minus_exp(depth), full);
-  };
-  Look look{hn::Zero(kFloats), {hn::Zero(kFloats), hn::Zero(kFloats), hn::Zero(kFloats)}};
+/// Of a segment of full length.
+HWY_INLINE Look look_at(const TransferTable& table, Floats value) {
   if (fit_lanes(*table.segments)) {
     const SegmentPlace place(*table.segments, value);
-    look.opacity = place.opacity();
-    if (!all_full)
-      look.opacity =
-          of_part(look.opacity, interpolated_column(table.extinctions, place_in(table, value)));
-    look.color = place.color();
-    return look;
+    return {place.opacity(), place.color()};
   }
   const TablePlace place = place_in(table, value);
-  look.opacity = interpolated_column(table.opacities, place);
-  if (!all_full)
-    look.opacity = of_part(look.opacity, interpolated_column(table.extinctions, place));
-  look.color = interpolated_rows(table.rows, place.row, place.fraction).color;
+  return {interpolated_column(table.opacities, place),
+          interpolated_rows(table.rows, place.row, place.fraction).color};
+}
+
+/// Of segments of the given lengths in steps, at most 1.
+HWY_INLINE Look look_at(const TransferTable& table, Floats value, Floats steps, float step_mm) {
+  Look look = look_at(table, value);
+  const auto part = hn::Lt(steps, hn::Set(kFloats, 1.0F));
+  if (hn::AllFalse(kFloats, part)) return look;
+  const Floats extinction = interpolated_column(table.extinctions, place_in(table, value));
+  const Floats depth = hn::Mul(extinction, hn::Mul(steps, hn::Set(kFloats, step_mm)));
+  look.opacity = hn::IfThenElse(part, one_minus_exp(depth), look.opacity);
   return look;
 }
 

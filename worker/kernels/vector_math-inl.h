@@ -11,6 +11,11 @@
 #include <hwy/contrib/math/math-inl.h>
 #include <hwy/highway.h>
 
+// Loops over a few vectors must not become loops over memory.
+#ifndef GOLDTHREAD_UNROLL
+#define GOLDTHREAD_UNROLL _Pragma("GCC unroll 8")
+#endif
+
 HWY_BEFORE_NAMESPACE();
 namespace goldthread::HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
@@ -29,6 +34,13 @@ constexpr UnsignedTag kUnsigned{};
 struct Floats3 {
   Floats x, y, z;
 };
+
+/// `v`, of which the compiler may assume nothing: a constant would be made anew in each loop, from
+/// a general register, where loading it costs less.
+HWY_INLINE std::int32_t unknown(std::int32_t v) {
+  asm("" : "+r"(v));
+  return v;
+}
 
 /// Towards 0, for numbers that an int32 can hold; others are unspecified but harmless.
 HWY_INLINE Ints truncated(Floats v) {

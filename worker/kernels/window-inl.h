@@ -16,6 +16,7 @@
 #include <limits>
 
 #include "worker/kernels/kernel_types.h"
+#include "worker/kernels/ray_packet-inl.h"
 #include "worker/kernels/vector_math-inl.h"
 
 HWY_BEFORE_NAMESPACE();
@@ -29,7 +30,6 @@ using ByteTag = hn::Repartition<std::uint8_t, FloatTag>;
 using Bytes = hn::Vec<ByteTag>;
 constexpr ByteTag kBytes{};
 
-/// Stored coordinates: voxel + 1.
 struct Ints3 {
   Ints x, y, z;
 };
@@ -43,6 +43,7 @@ class Window {
   HWY_INLINE explicit Window(const FieldLayout& layout) : layout_(layout) {}
 
   HWY_INLINE bool reaches(const Ints3&, FloatMask) const { return true; }
+  HWY_INLINE bool reaches(const Ints3&, const Ints3&, FloatMask) const { return true; }
   template <class Use>
   HWY_INLINE void cover(const Ints3&, FloatMask, Use&&) const {}
   using Place = Ints3;
@@ -51,7 +52,8 @@ class Window {
   template <int kX0, int kX1, int kY0, int kY1, int kFirstZ, int kCount>
   HWY_INLINE void take(const Place& at, FloatMask, int plane, Bytes (&slices)[kCount]) const {
     const std::uint8_t* voxels = layout_.voxels + plane * layout_.plane_bytes;
-    const int x = hn::GetLane(at.x), y = hn::GetLane(at.y), z = hn::GetLane(at.z);
+    // Stored coordinates: voxel + 1.
+    const int x = hn::GetLane(at.x) + 1, y = hn::GetLane(at.y) + 1, z = hn::GetLane(at.z) + 1;
     const auto voxel = [&](int i, int j, int k) {
       return std::uint32_t(voxels[(i >> 2) * layout_.column_bytes + (j >> 2) * layout_.row_bytes +
                                   std::int64_t(k) * 16 + (j & 3) * 4 + (i & 3)]);
@@ -87,8 +89,19 @@ HWY_INLINE Bytes low_byte_everywhere(Ints v) {
 /// and above it are wanted: 0 for values, 1 for gradients.
 template <int kReach>
 class Window {
+  /// Positions of a cell in the window that leave room for its reach on both sides.
+  static constexpr int kRoom = 6 - 2 * kReach;
+
  public:
-  HWY_INLINE explicit Window(const FieldLayout& layout) : layout_(layout) { move_to(0, 0, 0); }
+  HWY_INLINE explicit Window(const FieldLayout& layout)
+      : layout_(layout),
+        byte_3_(hn::Set(kBytes, std::uint8_t(unknown(3)))),
+        byte_12_(hn::Set(kBytes, std::uint8_t(unknown(12)))),
+        byte_4_(hn::Set(kBytes, std::uint8_t(unknown(4)))),
+        byte_32_(hn::Set(kBytes, std::uint8_t(unknown(32)))),
+        byte_16_(hn::Set(kBytes, std::uint8_t(unknown(16)))) {
+    move_to(0, 0, 0);
+  }
 
   /// Lays the window over the cells of all `lanes`, `at` their lower corners; false where it does
   /// not reach, then cover() must be used.
@@ -96,6 +109,19 @@ class Window {
     if (hn::AllFalse(kFloats, hn::AndNot(contains(at), lanes))) return true;
     move_to_lowest(at, lanes);
     return hn::AllFalse(kFloats, hn::AndNot(contains(at), lanes));
+  }
+
+  /// How large a box lie() can take in.
+  static constexpr float kBeamEdges[3] = {float(kRoom - 3), float(kRoom - 3), float(kRoom)};
+
+  /// Lays the window over a beam, which must be narrow, at segments `first` … `last`. Waits for
+  /// nothing and decides nothing, so that it is done long before its voxels are needed.
+  HWY_INLINE void lie(const Beam& beam, float first, float last) {
+    fetch_ahead(corner_of(origin_at(beam, first + kAhead, last + kAhead)));
+    const IntPoint origin = origin_at(beam, first, last);
+    corner_ = corner_of(origin);
+    const IntPoint voxel = hn::Sub(origin, hn::Set(kIntPoint, 1));
+    origin_ = {everywhere<0>(voxel), everywhere<1>(voxel), everywhere<2>(voxel)};
   }
 
   /// Calls use(lanes) with the window on some of `lanes` until all have had their turn.
@@ -115,9 +141,9 @@ class Window {
     Ints z;
   };
   HWY_INLINE Place place(const Ints3& at) const {
-    const Ints x = hn::Sub(at.x, hn::Set(kInts, origin_[0]));
-    const Ints y = hn::Sub(at.y, hn::Set(kInts, origin_[1]));
-    const Ints z = hn::Sub(at.z, hn::Set(kInts, origin_[2]));
+    const Ints x = hn::Sub(at.x, origin_.x);
+    const Ints y = hn::Sub(at.y, origin_.y);
+    const Ints z = hn::Sub(at.z, origin_.z);
     return {low_byte_everywhere(hn::Add(x, hn::ShiftLeft<3>(y))), z};
   }
 
@@ -132,21 +158,60 @@ class Window {
     // Bits of q: xx·X yy·Y, X and Y which of two columns. In a slice: xx yy.
     const auto shorts = hn::BitCast(hn::Repartition<std::uint16_t, FloatTag>(), q);
     const Bytes high = hn::BitCast(kBytes, hn::ShiftRight<1>(shorts));
-    const Bytes in_slice =
-        hn::Or(hn::And(q, hn::Set(kBytes, 3)), hn::And(high, hn::Set(kBytes, 12)));
+    const Bytes in_slice = hn::Or(hn::And(q, byte_3_), hn::And(high, byte_12_));
     const std::uint8_t* run = corner_ + plane * layout_.plane_bytes;
     look_up<kFirstZ, kCount>(run, q, in_slice, place.z, lanes, slices);
   }
 
  private:
-  /// Positions of a cell in the window that leave room for its reach on both sides.
-  static constexpr int kRoom = 6 - 2 * kReach;
+  using IntPointTag = hn::Simd<std::int32_t, 4, 0>;
+  using IntPoint = hn::Vec<IntPointTag>;
+  static constexpr IntPointTag kIntPoint{};
+  static constexpr float kAhead = 6;  ///< segments
+
+  /// In stored coordinates.
+  HWY_INLINE IntPoint origin_at(const Beam& beam, float first, float last) const {
+    alignas(16) static constexpr std::int32_t kAligned[4] = {~3, ~3, ~0, 0};
+    const auto cell = hn::ConvertTo(kIntPoint, hn::Max(beam.lowest(first, last), hn::Zero(kPoint)));
+    const auto stored = hn::Max(hn::Add(cell, hn::Set(kIntPoint, 1 - kReach)), hn::Zero(kIntPoint));
+    return hn::And(hn::Min(stored, hn::Load(kIntPoint, layout_.last_origin)),
+                   hn::Load(kIntPoint, kAligned));
+  }
+  HWY_INLINE const std::uint8_t* corner_of(IntPoint origin) const {
+    alignas(16) std::int32_t at[4];
+    hn::Store(origin, kIntPoint, at);
+    return layout_.voxels + (at[0] >> 2) * layout_.column_bytes + (at[1] >> 2) * layout_.row_bytes +
+           std::int64_t(at[2]) * 16;
+  }
+  /// What the window will hold soon, into the nearest cache.
+  HWY_INLINE void fetch_ahead(const std::uint8_t* corner) const {
+    const std::int64_t columns[4] = {0, layout_.column_bytes, layout_.row_bytes,
+                                     layout_.row_bytes + layout_.column_bytes};
+    for (const std::int64_t column : columns) {
+      __builtin_prefetch(corner + column);
+      __builtin_prefetch(corner + column + 64);
+    }
+  }
+
+  template <int kLane, class V>
+  static HWY_INLINE Ints everywhere(V v) {
+#if HWY_TARGET == HWY_AVX3 || HWY_TARGET == HWY_AVX3_DL
+    return Ints{_mm512_broadcastd_epi32(_mm_shuffle_epi32(v.raw, kLane * 0x55))};
+#elif HWY_TARGET == HWY_AVX2
+    return Ints{_mm256_broadcastd_epi32(_mm_shuffle_epi32(v.raw, kLane * 0x55))};
+#else
+    return hn::Broadcast<kLane>(v);
+#endif
+  }
 
   HWY_INLINE FloatMask contains(const Ints3& at) const {
-    const auto along = [&](Ints v, int axis) HWY_ATTR {
-      return hn::BitCast(kUnsigned, hn::Sub(v, hn::Set(kInts, origin_[axis] + kReach)));
+    const Ints reach = hn::Set(kInts, kReach);
+    const auto along = [&](Ints v, Ints origin) HWY_ATTR {
+      const Ints local = hn::Sub(v, origin);
+      return hn::BitCast(kUnsigned, kReach > 0 ? hn::Sub(local, reach) : local);
     };
-    const auto most = hn::Max(along(at.x, 0), hn::Max(along(at.y, 1), along(at.z, 2)));
+    const auto most =
+        hn::Max(along(at.x, origin_.x), hn::Max(along(at.y, origin_.y), along(at.z, origin_.z)));
     const auto bounded = hn::Min(most, hn::Set(kUnsigned, std::uint32_t(kRoom)));
     return hn::RebindMask(kFloats, hn::Eq(most, bounded));
   }
@@ -168,14 +233,14 @@ class Window {
     move_to(x[i], y[i], z[i]);
   }
   HWY_INLINE void move_to(std::int32_t x, std::int32_t y, std::int32_t z) {
+    // Stored coordinates: voxel + 1.
     const auto begin = [&](std::int32_t v, int axis) {
-      return std::clamp(v - kReach, 0, layout_.last_origin[axis]);
+      return std::clamp(v + 1 - kReach, 0, layout_.last_origin[axis]);
     };
-    origin_[0] = begin(x, 0) & ~3;
-    origin_[1] = begin(y, 1) & ~3;
-    origin_[2] = begin(z, 2);
-    corner_ = layout_.voxels + (origin_[0] >> 2) * layout_.column_bytes +
-              (origin_[1] >> 2) * layout_.row_bytes + std::int64_t(origin_[2]) * 16;
+    const std::int32_t x0 = begin(x, 0) & ~3, y0 = begin(y, 1) & ~3, z0 = begin(z, 2);
+    origin_ = {hn::Set(kInts, x0 - 1), hn::Set(kInts, y0 - 1), hn::Set(kInts, z0 - 1)};
+    corner_ = layout_.voxels + (x0 >> 2) * layout_.column_bytes + (y0 >> 2) * layout_.row_bytes +
+              std::int64_t(z0) * 16;
   }
 
 #if HWY_TARGET == HWY_AVX3_DL
@@ -187,12 +252,14 @@ class Window {
       return Bytes{_mm512_permutex2var_epi8(_mm512_loadu_si512(run + offset), index.raw,
                                             _mm512_loadu_si512(run + offset + 64))};
     };
-    const auto right = hn::TestBit(q, hn::Set(kBytes, 4));
-    const auto behind = hn::TestBit(q, hn::Set(kBytes, 32));
+    const auto right = hn::TestBit(q, byte_4_);
+    const auto behind = hn::TestBit(q, byte_32_);
     const Bytes z_bits = low_byte_everywhere(hn::ShiftLeft<4>(z));
+    Bytes index = hn::Or(in_slice, kFirstZ < 0 ? hn::Sub(z_bits, byte_16_) : z_bits);
+    static_assert(kFirstZ == 0 || kFirstZ == -1);
+    GOLDTHREAD_UNROLL
     for (int i = 0; i < kCount; ++i) {
-      const Bytes index =
-          hn::Or(in_slice, hn::Add(z_bits, hn::Set(kBytes, std::uint8_t(16 * (kFirstZ + i)))));
+      if (i > 0) index = hn::Add(index, byte_16_);
       const Bytes front =
           hn::IfThenElse(right, column(layout_.column_bytes, index), column(0, index));
       const Bytes back =
@@ -213,8 +280,8 @@ class Window {
     const int last = hn::GetLane(hn::MaxOfLanes(kInts, hn::IfThenElseZero(wanted, z)));
     // Index 128 and more gives 0: each lane reads from its own column only.
     const Bytes none = hn::Set(kBytes, 128);
-    const auto right = hn::TestBit(q, hn::Set(kBytes, 4));
-    const auto behind = hn::TestBit(q, hn::Set(kBytes, 32));
+    const auto right = hn::TestBit(q, byte_4_);
+    const auto behind = hn::TestBit(q, byte_32_);
     const Bytes front_index = hn::IfThenElse(behind, none, in_slice);
     const Bytes back_index = hn::IfThenElse(behind, in_slice, none);
     const Bytes indices[4] = {
@@ -240,8 +307,9 @@ class Window {
 #endif
 
   const FieldLayout& layout_;
-  std::int32_t origin_[3] = {0, 0, 0};  ///< stored coordinates of the window's first voxel
+  Ints3 origin_;  ///< the window's first voxel, the same in all lanes
   const std::uint8_t* corner_ = nullptr;
+  Bytes byte_3_, byte_12_, byte_4_, byte_32_, byte_16_;
 };
 
 #endif  // HWY_TARGET == HWY_SCALAR
