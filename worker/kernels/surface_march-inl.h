@@ -202,7 +202,10 @@ class SurfaceMarch {
     Floats value =
         hn::IfThenElse(value_is_stale_, hn::Add(cubic.base(), cubic.rise(ends[0])), value_);
     for (int part = 0; part < 3; ++part) {
-      const Floats next = hn::Add(cubic.base(), cubic.rise(ends[part + 1]));
+      // A part without length has nothing to cross: rounding at a face must not count as one.
+      const auto none = hn::Eq(ends[part + 1], ends[part]);
+      const Floats next =
+          hn::IfThenElse(none, value, hn::Add(cubic.base(), cubic.rise(ends[part + 1])));
       const FloatMask rising = hn::Lt(value, next);
       const std::size_t count = scene_.surfaces.size();
       for (std::size_t i = 0; i < count; ++i) {

@@ -29,6 +29,9 @@ Domain domain_of(const TransferFunction& function, const VolumeInfo& info) {
     nodes.first = std::min(nodes.first, node.value);
     nodes.last = std::max(nodes.last, node.value);
   }
+  // A row in front of the first node: where that is a step, another value holds before it.
+  const double range = std::max(nodes.last - nodes.first, info.maximum - info.minimum);
+  nodes.first -= info.type == VoxelType::kFloat32 ? range / kLeastRows : 1;
   Domain domain{std::max(nodes.first, info.minimum), std::min(nodes.last, info.maximum)};
   if (!(domain.first <= domain.last)) domain = {info.minimum, info.maximum};
   return domain;
@@ -205,7 +208,9 @@ TransferRows::TransferRows(const TransferFunction& function, const VolumeInfo& i
       2, std::size_t(std::ceil((domain.last - domain.first) * per_value)) + 1);
   rows_.reserve(count * 4);
   for (std::size_t i = 0; i < count; ++i) {
-    const double value = domain.first + double(i) / per_value;
+    // The last row is at the last node, not a rounding before it: what holds there holds behind.
+    const double place = domain.first + double(i) / per_value;
+    const double value = i + 1 == count ? std::max(place, domain.last) : place;
     const glm::dvec3 color = function.color_at(value) * color_factor;
     for (int c = 0; c < 3; ++c) rows_.push_back(float(color[c]));
     const double extinction = function.extinction_at(value);

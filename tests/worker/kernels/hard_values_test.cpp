@@ -194,6 +194,44 @@ TEST_P(HardValue, AStepOfTheTransferFunctionHoldsItsLaterNode) {
   EXPECT_NEAR(central_ray(scene, volume).alpha, -std::expm1(-0.05 * 15), 5e-4);
 }
 
+TEST_P(HardValue, StepsAtTheFirstAndLastNodeHoldOnBothSides) {
+  // Below the first node its earlier value is constant, above the last its later one; in segments
+  // of full length, and in parts of one.
+  const auto volume = float_volume([](int, int, int k) { return double(k); });
+  TransferFunction function = linear_extinction({{28, 0.05}});
+  const double alpha = function.opacity.front().alpha;
+  Scene scene = axial_scene(volume->info().geometry, function);
+  const auto expect_depth = [&](const std::vector<OpacityNode>& nodes, double length) {
+    scene.volumes[0].transfer_function->opacity = nodes;
+    scene.step_mm = 0.01;
+    // A segment and a row of the table.
+    EXPECT_NEAR(central_ray(scene, volume).alpha, -std::expm1(-0.05 * length),
+                0.05 * (0.01 + 32.0 / 4096))
+        << length;
+  };
+  expect_depth({{10, 0}, {10, alpha}}, 22);
+  expect_depth({{10, alpha}, {10, 0}}, 10);
+  expect_depth({{10, 0}, {10, alpha}, {25, alpha}, {25, 0}}, 15);
+  expect_depth({{10, alpha}, {10, 0}, {25, 0}, {25, alpha}}, 17);
+  // One part of a segment, with all its values below the first node.
+  scene.volumes[0].transfer_function->opacity = {{40, 0}, {40, alpha}};
+  scene.step_mm = 100;
+  EXPECT_EQ(central_ray(scene, volume), Sample{});
+  scene.volumes[0].transfer_function->opacity = {{20, 0}, {20, alpha}};
+  scene.camera->position.z = -30;
+  EXPECT_EQ(central_ray(scene, volume), Sample{});
+}
+
+TEST_P(HardValue, AStepOfColourAtTheFirstNodeHoldsOnBothSides) {
+  const auto volume = float_volume([](int, int, int k) { return double(k); });
+  Scene scene = axial_scene(volume->info().geometry, linear_extinction({{28, 0.05}}));
+  scene.volumes[0].transfer_function->color = {{10, {1, 0, 0}}, {10, {0, 1, 0}}};
+  scene.step_mm = 0.01;
+  const Sample found = central_ray(scene, volume);
+  EXPECT_NEAR(found.red, -std::expm1(-0.05 * 10), 1e-3);
+  EXPECT_NEAR(found.green, std::exp(-0.05 * 10) * -std::expm1(-0.05 * 22), 1e-3);
+}
+
 TEST_P(HardValue, AJumpFromTransparentToOpaqueHidesWhatLiesBehind) {
   const auto volume = float_volume([](int, int, int k) { return double(k); });
   Scene scene = axial_scene(volume->info().geometry,

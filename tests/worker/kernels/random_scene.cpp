@@ -114,13 +114,13 @@ TransferFunction Generator::transfer_function(const VolumeInfo& info, double dia
     function.color.push_back({value((i + real(0, 1)) / count), color()});
   const double height = chance(0.1) ? 1 : real(0.1, 0.95);
   const int kind = integer(0, 2);
-  if (kind == 1) function.opacity.push_back({value(-0.1), 0});
   for (int i = 0, count = integer(2, 4); i < count; ++i) {
     const double at = value((i + real(0.1, 0.9)) / count);
     if (kind == 0) {  // slopes
       function.opacity.push_back({at, chance(0.3) ? 0 : real(0, height)});
     } else if (kind == 1) {  // steps
-      function.opacity.push_back({at, function.opacity.back().alpha});
+      const double before = function.opacity.empty() ? 0 : function.opacity.back().alpha;
+      function.opacity.push_back({at, before});
       function.opacity.push_back({at, chance(0.4) ? 0 : real(0, height)});
     } else {  // peaks
       const double width = range * real(0.005, 0.05) / count;
@@ -207,10 +207,12 @@ RandomCase Generator::make() {
   if (chance(0.4))
     material.shading =
         Shading{real(0, 0.5), real(0, 0.8), real(0, 0.5), chance(0.5) ? 20 : real(1, 50)};
+  // Never just the value of a constant volume, of which each rounding would make a surface.
+  const double range = std::max(info.maximum - info.minimum, 1e-3);
   if (material.mode == Mode::kIsosurface || (material.mode == Mode::kDvr && chance(0.15)))
     for (int i = 0, count = integer(1, 3); i < count; ++i)
-      material.isosurfaces.push_back({info.minimum + real(0, 1) * (info.maximum - info.minimum),
-                                      color(), chance(0.4) ? 1 : real(0, 1)});
+      material.isosurfaces.push_back(
+          {info.minimum + real(0, 1) * range, color(), chance(0.4) ? 1 : real(0, 1)});
   scene.volumes = {material};
   const glm::dvec3& spacing = info.geometry.spacing_mm;
   const double smallest = std::min({spacing.x, spacing.y, spacing.z});

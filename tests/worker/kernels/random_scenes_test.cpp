@@ -36,6 +36,8 @@ std::filesystem::path scratch(const std::string& name) {
          ("goldthread-" + name + "-" + std::to_string(getpid()));
 }
 
+constexpr double kRounding = 0.005 / 255;
+
 // The suprema of the bound are taken over finitely many points.
 constexpr double kSafety = 2;
 
@@ -113,23 +115,23 @@ Outcome compare(Kind kind, double tolerance) {
 }
 
 TEST(RandomScenes, OfEmissionAndAbsorptionAreWithinTheBoundOfTheirStep) {
-  const Outcome outcome = compare(Kind::kAbsorption, 1e-6);
+  const Outcome outcome = compare(Kind::kAbsorption, kRounding);
   EXPECT_EQ(outcome.beyond, 0);
   EXPECT_GT(outcome.tight, outcome.rays / 2);
   EXPECT_GT(outcome.cases, 3000);
 }
 
 TEST(RandomScenes, OfTheGreatestValueAreWithinTheBoundOfTheirStep) {
-  const Outcome outcome = compare(Kind::kGreatest, 1e-6);
+  const Outcome outcome = compare(Kind::kGreatest, kRounding);
   EXPECT_EQ(outcome.beyond, 0);
   EXPECT_GT(outcome.tight, outcome.rays / 2);
   EXPECT_GT(outcome.cases, 1000);
 }
 
 TEST(RandomScenes, OfSurfacesDifferInFewRays) {
-  // Where a ray grazes a surface, or crosses it twice inside a step, hits are missed.
+  // Where a ray grazes a surface, rounding decides whether it is hit.
   const Outcome outcome = compare(Kind::kSurfaces, 0.5 / 255);
-  EXPECT_LT(double(outcome.beyond), 0.025 * double(outcome.rays));
+  EXPECT_LT(double(outcome.beyond), 1e-4 * double(outcome.rays));
   EXPECT_GT(outcome.cases, 1000);
 }
 

@@ -11,6 +11,7 @@
 #include <random>
 
 #include "cast_support.h"
+#include "every_instruction_set.h"
 #include "worker/kernels/kernel_table.h"
 
 namespace goldthread::test {
@@ -54,17 +55,12 @@ std::vector<std::pair<std::string, Scene>> scenes_of_all_kernels(const VolumeInf
   return scenes;
 }
 
-class EveryInstructionSet : public testing::TestWithParam<std::string> {
- protected:
-  void SetUp() override { force_instruction_set(GetParam()); }
-  void TearDown() override { force_instruction_set(""); }
-};
-INSTANTIATE_TEST_SUITE_P(, EveryInstructionSet, testing::ValuesIn(instruction_sets()),
-                         [](const auto& set) { return set.param; });
+class OnEveryInstructionSet : public EveryInstructionSet {};
+GOLDTHREAD_ON_EVERY_INSTRUCTION_SET(OnEveryInstructionSet);
 
-TEST_P(EveryInstructionSet, IsTheOneThatRuns) { EXPECT_EQ(instruction_set(), GetParam()); }
+TEST_P(OnEveryInstructionSet, IsTheOneThatRuns) { EXPECT_EQ(instruction_set(), GetParam()); }
 
-TEST_P(EveryInstructionSet, AgreesWithTheReferenceForAllKernels) {
+TEST_P(OnEveryInstructionSet, AgreesWithTheReferenceForAllKernels) {
   for (const VoxelType type : {VoxelType::kUInt8, VoxelType::kInt16, VoxelType::kFloat32}) {
     const auto volume = blob_volume(type);
     for (auto& [name, scene] : scenes_of_all_kernels(volume->info())) {
@@ -79,7 +75,7 @@ TEST_P(EveryInstructionSet, AgreesWithTheReferenceForAllKernels) {
   }
 }
 
-TEST_P(EveryInstructionSet, GivesEachRayTheSameBitsInAnyCompany) {
+TEST_P(OnEveryInstructionSet, GivesEachRayTheSameBitsInAnyCompany) {
   const auto volume = blob_volume();
   for (const auto& [name, scene] : scenes_of_all_kernels(volume->info())) {
     const auto positions = pixel_centres(scene.image.size);
@@ -106,7 +102,7 @@ TEST_P(EveryInstructionSet, GivesEachRayTheSameBitsInAnyCompany) {
   }
 }
 
-TEST_P(EveryInstructionSet, SurvivesBadVoxels) {
+TEST_P(OnEveryInstructionSet, SurvivesBadVoxels) {
   std::mt19937 random(3);
   const auto volume =
       make_volume({.size = {19, 17, 15}}, VoxelType::kFloat32, [&](int i, int j, int k) {
