@@ -29,7 +29,7 @@ class CommittedScene {
     if (features_.shading) shading_ = *material.shading;
 
     hits_something_ = glm::all(glm::greaterThan(info.geometry.size, glm::ivec3(1)));
-    terms_.step_mm = step_of(scene.step_mm, info.geometry);
+    terms_.step_mm = step_of(scene.step_mm, info.geometry, features_);
     terms_.field = field_layout_of(*volume_);
     terms_.phong = phong_term_of(shading_, info);
     if (features_.isosurfaces)

@@ -75,6 +75,13 @@ class CellCubic {
     return {hn::Min(s1, s2), hn::Max(s1, s2)};
   }
 
+  /// The greatest value on the chord.
+  HWY_INLINE Floats greatest() const {
+    const Turns turn = turns();
+    const Floats at_ends = hn::Max(rise(hn::Zero(kFloats)), rise(hn::Set(kFloats, 1.0F)));
+    return hn::Add(base_, hn::Max(at_ends, hn::Max(rise(turn.first), rise(turn.second))));
+  }
+
   /// Where base() + rise() is `value`, between two places on whose sides it differs; the field must
   /// be monotone there. Newton's method inside a bracket, halving where it would leave it.
   HWY_INLINE Floats solve(Floats value, Floats begin, Floats end, FloatMask wanted) const {

@@ -60,7 +60,7 @@ Features features_of(const SceneVolume& material, const std::vector<Light>& ligh
   return features;
 }
 
-double step_of(double wanted_mm, const VolumeGeometry& geometry) {
+double step_of(double wanted_mm, const VolumeGeometry& geometry, Features features) {
   const glm::dmat3 map = linear_map(geometry);
   double smallest = std::numeric_limits<double>::infinity();
   double diagonal = 0;
@@ -68,7 +68,8 @@ double step_of(double wanted_mm, const VolumeGeometry& geometry) {
     smallest = std::min(smallest, glm::length(map[axis]));
     diagonal += glm::length(map[axis]) * geometry.size[axis];
   }
-  const double step = wanted_mm > 0 ? wanted_mm : 0.5 * smallest;
+  const double share = features.dvr && features.shading ? 0.2 : 0.5;
+  const double step = wanted_mm > 0 ? wanted_mm : share * smallest;
   return std::max(step, diagonal / (1 << 20));
 }
 

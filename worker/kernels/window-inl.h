@@ -128,8 +128,13 @@ class Window {
   template <class Use>
   HWY_INLINE void cover(const Ints3& at, FloatMask lanes, Use&& use) {
     while (!hn::AllFalse(kFloats, lanes)) {
-      move_to_first(at, lanes);
-      const FloatMask inside = hn::And(lanes, contains(at));
+      move_to_lowest(at, lanes);
+      FloatMask inside = hn::And(lanes, contains(at));
+      // The lowest coordinates may be those of different lanes, with none of them close by.
+      if (hn::AllFalse(kFloats, inside)) {
+        move_to_first(at, lanes);
+        inside = hn::And(lanes, contains(at));
+      }
       use(inside);
       lanes = hn::AndNot(inside, lanes);
     }

@@ -127,11 +127,14 @@ TEST(VisibleCells, DistancesAreChebyshevsToTheOtherKind) {
   }
 }
 
-TEST(Step, DefaultsToHalfTheSmallestSpacingAndNeverNeedsTooManySegments) {
+TEST(Step, DefaultsToAShareOfTheSmallestSpacingAndNeverNeedsTooManySegments) {
   const VolumeGeometry geometry{.size = {100, 100, 100}, .spacing_mm = {1, 2, 0.6}};
-  EXPECT_DOUBLE_EQ(step_of(0, geometry), 0.3);
-  EXPECT_DOUBLE_EQ(step_of(0.7, geometry), 0.7);
-  EXPECT_GT(step_of(1e-30, geometry), 1e-4);
+  const Features unlit{.dvr = true}, lit{.dvr = true, .shading = true};
+  EXPECT_DOUBLE_EQ(step_of(0, geometry, unlit), 0.3);
+  EXPECT_DOUBLE_EQ(step_of(0, geometry, lit), 0.12);
+  EXPECT_DOUBLE_EQ(step_of(0.7, geometry, unlit), 0.7);
+  EXPECT_DOUBLE_EQ(step_of(0.7, geometry, lit), 0.7);
+  EXPECT_GT(step_of(1e-30, geometry, unlit), 1e-4);
 }
 
 }  // namespace
