@@ -93,7 +93,9 @@ class CellCubic {
     Floats above = hn::IfThenElse(rising, end, begin);
     Floats s = hn::Mul(half, hn::Add(begin, end));
     Floats previous = hn::Abs(hn::Sub(end, begin));
-    for (int round = 0; round < kMostRounds; ++round) {
+    // A lane that has come to its end stays there, whatever its company still needs.
+    FloatMask open = wanted;
+    for (int round = 0; round < kMostRounds && !hn::AllFalse(kFloats, open); ++round) {
       const Floats f = hn::Add(level, rise(s));
       const auto is_below = hn::Lt(f, hn::Zero(kFloats));
       below = hn::IfThenElse(is_below, s, below);
@@ -106,8 +108,8 @@ class CellCubic {
                                 hn::Le(hn::Add(change, change), previous));
       const Floats next = hn::IfThenElse(good, newton, hn::Mul(half, hn::Add(low, high)));
       previous = hn::Abs(hn::Sub(next, s));
-      s = next;
-      if (hn::AllFalse(kFloats, hn::And(wanted, hn::Gt(previous, tolerance)))) break;
+      s = hn::IfThenElse(open, next, s);
+      open = hn::And(open, hn::Gt(previous, tolerance));
     }
     return s;
   }

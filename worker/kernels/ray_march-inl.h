@@ -87,6 +87,14 @@ class RayMarch {
     return 0;
   }
 
+  /// Of the whole segment `ahead` of the next one. A ray in a face of the volume may be off by
+  /// rounding, for which windows have room unless they are for gradients too.
+  HWY_INLINE Floats3 middle_of_whole(int ahead) const {
+    const Floats steps = hn::Add(steps_.index(), hn::Set(kFloats, 0.5F + float(ahead)));
+    if constexpr (kShading) return rays_.at(steps, scene_.field.upper);
+    return rays_.at(steps);
+  }
+
   /// The next steps, in which all rays have whole segments.
   HWY_INLINE void take_whole(int steps) {
 #if HWY_TARGET != HWY_SCALAR
@@ -98,7 +106,7 @@ class RayMarch {
     }
 #endif
     for (; steps > 0 && !hn::AllFalse(kFloats, alive_); --steps) {
-      const Floats3 position = rays_.at(hn::Add(steps_.index(), hn::Set(kFloats, 0.5F)));
+      const Floats3 position = middle_of_whole(0);
       const CellPlace place = locate(position);
       Floats value = field_.value(place, present_);
       const FloatMask finite = take_finite(value);
@@ -115,7 +123,7 @@ class RayMarch {
     Floats3 positions[kCount];
     GOLDTHREAD_UNROLL
     for (int i = 0; i < kCount; ++i) {
-      positions[i] = rays_.at(hn::Add(steps_.index(), hn::Set(kFloats, 0.5F + float(i))));
+      positions[i] = middle_of_whole(i);
       places[i] = locate(positions[i]);
     }
     Floats values[kCount];
@@ -138,7 +146,7 @@ class RayMarch {
   HWY_INLINE void take_parts(int steps) {
     for (; steps > 0 && !hn::AllFalse(kFloats, alive_); --steps) {
       const Segment segment = segment_of(rays_, steps_.index());
-      const Floats3 position = rays_.at(middle(segment.begin, segment.end));
+      const Floats3 position = rays_.at(middle(segment.begin, segment.end), scene_.field.upper);
       const CellPlace place = locate(position);
       const FloatMask inside = steps_.inside();
       Floats value = field_.value(place, inside);
