@@ -103,7 +103,7 @@ class GreatestValue {
     GOLDTHREAD_UNROLL
     for (int i = 0; i < kTogether; ++i) {
       middles[i] = hn::Add(steps_.index(), hn::Set(kFloats, 0.5F + float(i)));
-      places[i] = locate(rays_.at(middles[i]));
+      places[i] = locate(rays_.at(middles[i], scene_.field.upper));
     }
     field_.values(beam_, steps_.step(), places, rays_.hit(), values);
     GOLDTHREAD_UNROLL
@@ -126,7 +126,7 @@ class GreatestValue {
       if (!hn::AllFalse(kFloats, promising)) {
         const float sum =
             hn::GetLane(hn::SumOfLanes(kFloats, hn::IfThenElseZero(promising, known)));
-        return std::max(1, int(sum / float(hn::CountTrue(kFloats, promising))));
+        return whole_steps(sum / float(hn::CountTrue(kFloats, promising)));
       }
       const Floats far = hn::Set(kFloats, 1e6F);
       const Floats dull = hn::IfThenElse(hn::Lt(index, hn::Zero(kFloats)), hn::Neg(index), known);
@@ -161,7 +161,10 @@ class GreatestValue {
     narrow(cell.x, rays_.start.x, rays_.direction.x, passage);
     narrow(cell.y, rays_.start.y, rays_.direction.y, passage);
     narrow(cell.z, rays_.start.z, rays_.direction.z, passage);
-    const Floats length = hn::Max(hn::Sub(passage.exit, passage.entry), hn::Zero(kFloats));
+    // Rounding must not carry a ray that is nearly parallel to a face away from its cell.
+    passage.entry = hn::Min(passage.entry, inside);
+    passage.exit = hn::Max(passage.exit, inside);
+    const Floats length = hn::Sub(passage.exit, passage.entry);
     Floats corners[8];
     field_.cell(place, lanes, corners);
     const Floats3 at = rays_.at(passage.entry);

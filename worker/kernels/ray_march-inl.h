@@ -75,7 +75,7 @@ class RayMarch {
       const Floats known = hn::Sub(segment_after(index, cube.exit), index);
       if (!hn::AllFalse(kFloats, visible)) {
         const float sum = hn::GetLane(hn::SumOfLanes(kFloats, hn::IfThenElseZero(visible, known)));
-        return std::max(1, int(sum / float(hn::CountTrue(kFloats, visible))));
+        return whole_steps(sum / float(hn::CountTrue(kFloats, visible)));
       }
       // All in the dark: on to where the first ray leaves it, or enters the volume.
       const Floats far = hn::Set(kFloats, 1e6F);
@@ -87,12 +87,10 @@ class RayMarch {
     return 0;
   }
 
-  /// Of the whole segment `ahead` of the next one. A ray in a face of the volume may be off by
-  /// rounding, for which windows have room unless they are for gradients too.
+  /// Of the whole segment `ahead` of the next one.
   HWY_INLINE Floats3 middle_of_whole(int ahead) const {
     const Floats steps = hn::Add(steps_.index(), hn::Set(kFloats, 0.5F + float(ahead)));
-    if constexpr (kShading) return rays_.at(steps, scene_.field.upper);
-    return rays_.at(steps);
+    return rays_.at(steps, scene_.field.upper);
   }
 
   /// The next steps, in which all rays have whole segments.

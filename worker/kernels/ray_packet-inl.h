@@ -170,6 +170,9 @@ struct Rays {
   }
 };
 
+/// At least 1, and no more than an int holds: cells end at infinity for rays that never leave them.
+HWY_INLINE int whole_steps(float steps) { return int(std::clamp(steps, 1.0F, 1e6F)); }
+
 /// Where a packet is whose rays go in step.
 class PacketSteps {
  public:

@@ -93,6 +93,12 @@ class SurfaceMarch {
       known_until_ = hn::IfThenElse(unsure, hn::Max(until, hn::Add(at_, hn::Set(kFloats, 1e-3F))),
                                     known_until_);
       if (hn::AllFalse(kFloats, leaps)) return;
+      if constexpr (kDvr) {
+        // What was begun before the empty cube is finished: its segment may end inside.
+        const Floats begun = hn::Add(hn::Floor(integrated_), hn::Set(kFloats, 1.0F));
+        const FloatMask open = hn::And(leaps, hn::Lt(integrated_, at_));
+        integrate(open, hn::Min(begun, rays_.last), /*to_the_end=*/true);
+      }
       at_ = hn::IfThenElse(leaps, hn::Min(cube.exit, rays_.last), at_);
       integrated_ = hn::IfThenElse(leaps, hn::Max(integrated_, at_), integrated_);
       alive_ = hn::And(alive_, hn::Lt(at_, rays_.last));

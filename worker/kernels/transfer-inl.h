@@ -105,8 +105,8 @@ class SegmentPlace {
   HWY_INLINE Floats opacity() const {
     const auto& c = segments_.opacity;
     const Floats high = hn::MulAdd(way_, coefficient(c[3]), coefficient(c[2]));
-    const Floats low = hn::MulAdd(way_, coefficient(c[1]), coefficient(c[0]));
-    return hn::Max(hn::MulAdd(hn::Mul(way_, way_), high, low), hn::Zero(kFloats));
+    const Floats linear = hn::MulAdd(way_, high, coefficient(c[1]));
+    return hn::Max(hn::MulAdd(way_, linear, coefficient(c[0])), hn::Zero(kFloats));
   }
   HWY_INLINE Floats3 color() const { return {channel(0), channel(1), channel(2)}; }
 

@@ -146,6 +146,8 @@ class SegmentFit {
   }
 
   bool holds(const Cubic& cubic, const Line& line, double width) const {
+    // Beyond, its coefficients leave float; the rows serve there.
+    if (!(width > 1e-9 && width < 1e9)) return false;
     constexpr int kProbes = 64;
     for (int i = 1; i < kProbes; ++i) {
       const double w = width * i / kProbes;
