@@ -98,6 +98,14 @@ class Field {
     return result;
   }
 
+  /// Where a value is finite; the others become 0.
+  static HWY_INLINE FloatMask take_finite(Floats& value) {
+    if constexpr (!kMayBeInfinite) return hn::Eq(hn::Zero(kFloats), hn::Zero(kFloats));
+    const FloatMask finite = is_finite(value);
+    value = hn::IfThenElseZero(finite, value);
+    return finite;
+  }
+
   static HWY_INLINE Floats trilinear(const Floats (&corners)[8], const CellPlace& place) {
     const Floats near = lerp(lerp(corners[0], corners[1], place.fx),
                              lerp(corners[2], corners[3], place.fx), place.fy);

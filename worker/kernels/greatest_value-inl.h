@@ -123,16 +123,8 @@ class GreatestValue {
       const auto cube = walk_.look_for_more(rays_.at(at, scene_.field.upper), at, to_beat_);
       const FloatMask promising = hn::And(steps_.inside(), cube.visible);
       const Floats known = hn::Sub(segment_after(index, cube.exit), index);
-      if (!hn::AllFalse(kFloats, promising)) {
-        const float sum =
-            hn::GetLane(hn::SumOfLanes(kFloats, hn::IfThenElseZero(promising, known)));
-        return whole_steps(sum / float(hn::CountTrue(kFloats, promising)));
-      }
-      const Floats far = hn::Set(kFloats, 1e6F);
-      const Floats dull = hn::IfThenElse(hn::Lt(index, hn::Zero(kFloats)), hn::Neg(index), known);
-      const FloatMask counts = hn::And(rays_.hit(), hn::Lt(index, rays_.segments));
-      const Floats way = hn::MinOfLanes(kFloats, hn::IfThenElse(counts, dull, far));
-      steps_.advance(hn::GetLane(way));
+      if (!hn::AllFalse(kFloats, promising)) return PacketSteps::average(promising, known);
+      steps_.leap(rays_.hit(), known);
     }
     return 0;
   }

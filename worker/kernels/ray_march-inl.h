@@ -73,16 +73,8 @@ class RayMarch {
       const FloatMask inside = hn::And(wanted_, steps_.inside());
       const FloatMask visible = hn::And(inside, cube.visible);
       const Floats known = hn::Sub(segment_after(index, cube.exit), index);
-      if (!hn::AllFalse(kFloats, visible)) {
-        const float sum = hn::GetLane(hn::SumOfLanes(kFloats, hn::IfThenElseZero(visible, known)));
-        return whole_steps(sum / float(hn::CountTrue(kFloats, visible)));
-      }
-      // All in the dark: on to where the first ray leaves it, or enters the volume.
-      const Floats far = hn::Set(kFloats, 1e6F);
-      const Floats dark = hn::IfThenElse(hn::Lt(index, hn::Zero(kFloats)), hn::Neg(index), known);
-      const FloatMask counts = hn::And(wanted_, hn::Lt(index, rays_.segments));
-      const Floats way = hn::MinOfLanes(kFloats, hn::IfThenElse(counts, dark, far));
-      steps_.advance(hn::GetLane(way));
+      if (!hn::AllFalse(kFloats, visible)) return PacketSteps::average(visible, known);
+      steps_.leap(wanted_, known);
     }
     return 0;
   }
@@ -107,7 +99,7 @@ class RayMarch {
       const Floats3 position = middle_of_whole(0);
       const CellPlace place = locate(position);
       Floats value = field_.value(place, present_);
-      const FloatMask finite = take_finite(value);
+      const FloatMask finite = FieldType::take_finite(value);
       add(hn::And(present_, finite), place, position, look_at(scene_.transfer, value));
       steps_.advance(1);
     }
@@ -130,7 +122,7 @@ class RayMarch {
     Look looks[kCount];
     GOLDTHREAD_UNROLL
     for (int i = 0; i < kCount; ++i) {
-      finite[i] = take_finite(values[i]);
+      finite[i] = FieldType::take_finite(values[i]);
       looks[i] = look_at(scene_.transfer, values[i]);
     }
     GOLDTHREAD_UNROLL
@@ -148,7 +140,7 @@ class RayMarch {
       const CellPlace place = locate(position);
       const FloatMask inside = steps_.inside();
       Floats value = field_.value(place, inside);
-      const FloatMask finite = take_finite(value);
+      const FloatMask finite = FieldType::take_finite(value);
       add(hn::And(inside, finite), place, position,
           look_at(scene_.transfer, value, hn::Sub(segment.end, segment.begin), step_mm_));
       steps_.advance(1);
@@ -167,14 +159,6 @@ class RayMarch {
     }
     sum_.add(look.color, hn::IfThenElseZero(seen, look.opacity));
     alive_ = hn::And(alive_, sum_.is_open());
-  }
-
-  /// Where a value is finite; the others become 0.
-  static HWY_INLINE FloatMask take_finite(Floats& value) {
-    if constexpr (!FieldType::kMayBeInfinite) return hn::Eq(hn::Zero(kFloats), hn::Zero(kFloats));
-    const FloatMask finite = is_finite(value);
-    value = hn::IfThenElseZero(finite, value);
-    return finite;
   }
 
   using FieldType = Field<kStorage, kShading>;

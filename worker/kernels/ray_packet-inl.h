@@ -170,9 +170,6 @@ struct Rays {
   }
 };
 
-/// At least 1, and no more than an int holds: cells end at infinity for rays that never leave them.
-HWY_INLINE int whole_steps(float steps) { return int(std::clamp(steps, 1.0F, 1e6F)); }
-
 /// Where a packet is whose rays go in step.
 class PacketSteps {
  public:
@@ -204,6 +201,20 @@ class PacketSteps {
   HWY_INLINE int until_whole() const {
     const bool comes = step_ < whole_from_ && whole_from_ < whole_until_;
     return int((comes ? whole_from_ : end_) - step_);
+  }
+  /// Of the steps that rays know about, `known`, the average over `rays`: at least 1, and no more
+  /// than an int holds, for a ray may never leave its cells.
+  static HWY_INLINE int average(FloatMask rays, Floats known) {
+    const float sum = hn::GetLane(hn::SumOfLanes(kFloats, hn::IfThenElseZero(rays, known)));
+    return int(std::clamp(sum / float(hn::CountTrue(kFloats, rays)), 1.0F, 1e6F));
+  }
+  /// Nothing is to be had for as many steps as `known`: on to where the first of `rays` leaves what
+  /// it knows, or enters the volume; to the end where none goes on.
+  HWY_INLINE void leap(FloatMask rays, Floats known) {
+    const Floats far = hn::Set(kFloats, 1e6F);
+    const Floats way = hn::IfThenElse(hn::Lt(index_, hn::Zero(kFloats)), hn::Neg(index_), known);
+    const FloatMask go_on = hn::And(rays, hn::Lt(index_, rays_.segments));
+    advance(hn::GetLane(hn::MinOfLanes(kFloats, hn::IfThenElse(go_on, way, far))));
   }
   HWY_INLINE void advance(float steps) {
     step_ += steps;

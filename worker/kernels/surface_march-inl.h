@@ -250,16 +250,11 @@ class SurfaceMarch {
   HWY_INLINE void add_interval(FloatMask sampled, Floats begin, Floats end) {
     const Floats3 position = rays_.at(middle(begin, end), scene_.field.upper);
     const CellPlace place = locate(position);
-    const Floats value = field_.value(place, sampled);
+    Floats value = field_.value(place, sampled);
+    const FloatMask finite = FieldType::take_finite(value);
     samples_ += hn::CountTrue(kFloats, sampled);
-    FloatMask seen = hn::And(sampled, sum_.is_open());
-    Floats usable = value;
-    if constexpr (FieldType::kMayBeInfinite) {
-      const FloatMask finite = is_finite(value);
-      seen = hn::And(seen, finite);
-      usable = hn::IfThenElseZero(finite, value);
-    }
-    Look look = look_at(scene_.transfer, usable, hn::Sub(end, begin), step_mm_);
+    const FloatMask seen = hn::And(hn::And(sampled, sum_.is_open()), finite);
+    Look look = look_at(scene_.transfer, value, hn::Sub(end, begin), step_mm_);
     const FloatMask visible = hn::And(seen, hn::Gt(look.opacity, hn::Zero(kFloats)));
     if (hn::AllFalse(kFloats, visible)) return;
     if constexpr (kShading)

@@ -185,8 +185,11 @@ class Window {
   HWY_INLINE const std::uint8_t* corner_of(IntPoint origin) const {
     alignas(16) std::int32_t at[4];
     hn::Store(origin, kIntPoint, at);
-    return layout_.voxels + (at[0] >> 2) * layout_.column_bytes + (at[1] >> 2) * layout_.row_bytes +
-           std::int64_t(at[2]) * 16;
+    return corner_of(at[0], at[1], at[2]);
+  }
+  HWY_INLINE const std::uint8_t* corner_of(std::int32_t x, std::int32_t y, std::int32_t z) const {
+    return layout_.voxels + (x >> 2) * layout_.column_bytes + (y >> 2) * layout_.row_bytes +
+           std::int64_t(z) * 16;
   }
   /// What the window will hold soon, into the nearest cache.
   HWY_INLINE void fetch_ahead(const std::uint8_t* corner) const {
@@ -244,8 +247,7 @@ class Window {
     };
     const std::int32_t x0 = begin(x, 0) & ~3, y0 = begin(y, 1) & ~3, z0 = begin(z, 2);
     origin_ = {hn::Set(kInts, x0 - 1), hn::Set(kInts, y0 - 1), hn::Set(kInts, z0 - 1)};
-    corner_ = layout_.voxels + (x0 >> 2) * layout_.column_bytes + (y0 >> 2) * layout_.row_bytes +
-              std::int64_t(z0) * 16;
+    corner_ = corner_of(x0, y0, z0);
   }
 
 #if HWY_TARGET == HWY_AVX3_DL
