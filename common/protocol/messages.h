@@ -17,12 +17,13 @@
 #include "common/protocol/buffer.h"
 #include "common/protocol/codec.h"
 #include "common/scene/scene.h"
+#include "common/tile/refinement.h"
 #include "common/tile/tile_grid.h"
 #include "common/volume/volume.h"
 
 namespace goldthread {
 
-constexpr std::uint32_t kProtocolVersion = 1;
+constexpr std::uint32_t kProtocolVersion = 2;
 
 enum class Role : std::uint8_t { kMaster, kCompositor, kWorker };
 
@@ -38,6 +39,21 @@ struct Enumerators<VoxelType> {
 template <>
 struct Enumerators<ColorSpace> {
   static constexpr std::array values{ColorSpace::kDisplay, ColorSpace::kLinear};
+};
+template <>
+struct Enumerators<Sampling> {
+  static constexpr std::array values{Sampling::kAdaptive, Sampling::kSubdivision,
+                                     Sampling::kEveryPixel};
+};
+template <>
+struct Enumerators<Filter> {
+  static constexpr std::array values{Filter::kBox, Filter::kBilinear, Filter::kBiquadratic,
+                                     Filter::kPiecewiseQuadratic, Filter::kBicubic};
+};
+template <>
+struct Enumerators<Update> {
+  static constexpr std::array values{Update::kAll, Update::kHalf, Update::kQuarter,
+                                     Update::kFrameless};
 };
 /// Of a failure; kDone is none.
 template <>
@@ -102,27 +118,42 @@ struct SceneCommitted {
   std::uint32_t revision = 0;
   std::vector<std::string> features;
   std::string kernel;
+  /// Places that the scene may show, in the world, mm: the same from every worker.
+  std::vector<glm::dvec3> visible_points;
   GOLDTHREAD_MESSAGE(SceneCommitted, &SceneCommitted::revision, &SceneCommitted::features,
-                     &SceneCommitted::kernel)
+                     &SceneCommitted::kernel, &SceneCommitted::visible_points)
 };
-/// A worker has cast a quantum and sent its samples.
+/// A worker's first thread has begun to cast this view.
+struct ViewTaken {
+  Epoch epoch;
+  GOLDTHREAD_MESSAGE(ViewTaken, &ViewTaken::epoch)
+};
+/// What is known of the pixels of a tile after some steps: sums over its pixels, each the mean of
+/// the colour channels.
+struct TileQuality {
+  double squared_error = 0;     ///< estimated, against infinitely many samples in each pixel
+  double squared_gradient = 0;  ///< squared change of colour when the picture moves by a pixel
+  static constexpr auto fields() {
+    return std::tuple{&TileQuality::squared_error, &TileQuality::squared_gradient};
+  }
+};
+/// A worker has taken a tile through steps and sent the samples.
 struct TileDone {
   Epoch epoch;
   TileId tile;
-  Level to;
+  Step to;
   std::uint32_t cost_us = 0;  ///< time that a thread spent on it
   std::uint64_t rays = 0;
   std::uint64_t samples = 0;
+  TileQuality quality;
   GOLDTHREAD_MESSAGE(TileDone, &TileDone::epoch, &TileDone::tile, &TileDone::to, &TileDone::cost_us,
-                     &TileDone::rays, &TileDone::samples)
+                     &TileDone::rays, &TileDone::samples, &TileDone::quality)
 };
-/// Each tile of a compositor's band is at `level` or finer. `squared_error` is the estimated mean
-/// square error of the band at that level, per pixel and colour channel.
+/// Each tile of a compositor's band has taken `step` or more.
 struct BandReady {
   Epoch epoch;
-  Level level;
-  double squared_error = 0;
-  GOLDTHREAD_MESSAGE(BandReady, &BandReady::epoch, &BandReady::level, &BandReady::squared_error)
+  Step step;
+  GOLDTHREAD_MESSAGE(BandReady, &BandReady::epoch, &BandReady::step)
 };
 /// A finished band over its background: float RGBA rows from the top, answering CollectBand.
 struct BandPicture {
@@ -175,6 +206,13 @@ struct ViewerSize {
   ImageSize size;
   GOLDTHREAD_MESSAGE(ViewerSize, &ViewerSize::viewer, &ViewerSize::serial, &ViewerSize::size)
 };
+struct ViewerDisplay {
+  std::uint32_t viewer = 0;
+  std::uint32_t serial = 0;
+  DisplaySettings display;
+  GOLDTHREAD_MESSAGE(ViewerDisplay, &ViewerDisplay::viewer, &ViewerDisplay::serial,
+                     &ViewerDisplay::display)
+};
 /// How many pages look on, and whether one of them could take a picture at once.
 struct Audience {
   std::uint32_t viewers = 0;
@@ -184,8 +222,8 @@ struct Audience {
 
 using ToMaster =
     std::variant<Hello, Heartbeat, LoadProgress, VolumeLoaded, VolumeMapped, SceneCommitted,
-                 TileDone, BandReady, BandPicture, Counters, RankFailed, GatewayOpened,
-                 ViewerCamera, ViewerEdit, ViewerSize, Audience>;
+                 ViewTaken, TileDone, BandReady, BandPicture, Counters, RankFailed, GatewayOpened,
+                 ViewerCamera, ViewerEdit, ViewerSize, ViewerDisplay, Audience>;
 
 // ---- the master to a worker, or to a compositor
 // ---------------------------------------------------
@@ -216,23 +254,27 @@ struct CommitScene {
   std::string scene_json;
   GOLDTHREAD_MESSAGE(CommitScene, &CommitScene::revision, &CommitScene::scene_json)
 };
-/// A new view: everything of older epochs is dropped.
+/// A new view: everything of older epochs is dropped, but for what `update` keeps of them.
 struct BeginView {
   Epoch epoch;
   std::uint32_t scene_revision = 0;
   Camera camera;
   TileGrid grid;
+  Refinement refinement;
+  Update update = Update::kAll;
+  std::uint32_t frame = 0;  ///< which part of the samples an update casts first
   glm::dvec3 background{0};
   ColorSpace color_space = ColorSpace::kDisplay;
   GOLDTHREAD_MESSAGE(BeginView, &BeginView::epoch, &BeginView::scene_revision, &BeginView::camera,
-                     &BeginView::grid, &BeginView::background, &BeginView::color_space)
+                     &BeginView::grid, &BeginView::refinement, &BeginView::update,
+                     &BeginView::frame, &BeginView::background, &BeginView::color_space)
 };
-/// One quantum of work: take a tile from level `from` (kNoLevel: nothing) to `to`.
+/// One quantum of work: take a tile that has taken `from` steps to `to`.
 struct RenderTile {
   Epoch epoch;
   TileId tile;
-  Level from;
-  Level to;
+  Step from;
+  Step to;
   GOLDTHREAD_MESSAGE(RenderTile, &RenderTile::epoch, &RenderTile::tile, &RenderTile::from,
                      &RenderTile::to)
 };
@@ -253,15 +295,17 @@ using ToWorker = std::variant<BeginSession, LoadVolume, MapVolume, CommitScene, 
 // ---- to a compositor
 // ------------------------------------------------------------------------------
 
-/// A worker's samples of one quantum: float RGBA, in the order of new_samples().
+/// What changed in a tile by one quantum: `count` colours (Sample), then the place of each
+/// (SampleOffset), packed.
 struct Samples {
   Epoch epoch;
   TileId tile;
-  Level from;
-  Level to;
-  Buffer colors;
+  Step from;
+  Step to;
+  std::uint32_t count = 0;
+  Buffer packed;
   GOLDTHREAD_MESSAGE(Samples, &Samples::epoch, &Samples::tile, &Samples::from, &Samples::to,
-                     &Samples::colors)
+                     &Samples::count, &Samples::packed)
 };
 /// Encode the band as it is and send it to the gateway as part of `picture`.
 struct Present {
@@ -269,15 +313,23 @@ struct Present {
   std::uint32_t picture = 0;
   std::uint32_t viewer = 0;
   std::uint32_t serial = 0;
+  Filter filter = Filter::kBilinear;
+  ImageSize size;  ///< of the picture; the samples' own, or another one to filter them to
   bool lossless = false;
   bool final = false;
+  std::uint8_t cine_frame = 0;   ///< 1 … cine_frames: a frame of the cine loop
+  std::uint8_t cine_frames = 0;  ///< 0: no cine loop
+  float estimated_error = -1;    ///< RMS in 1/255; negative: unknown
   GOLDTHREAD_MESSAGE(Present, &Present::epoch, &Present::picture, &Present::viewer,
-                     &Present::serial, &Present::lossless, &Present::final)
+                     &Present::serial, &Present::filter, &Present::size, &Present::lossless,
+                     &Present::final, &Present::cine_frame, &Present::cine_frames,
+                     &Present::estimated_error)
 };
 /// Send the band's finished pixels to the master.
 struct CollectBand {
   Epoch epoch;
-  GOLDTHREAD_MESSAGE(CollectBand, &CollectBand::epoch)
+  Filter filter = Filter::kBilinear;
+  GOLDTHREAD_MESSAGE(CollectBand, &CollectBand::epoch, &CollectBand::filter)
 };
 /// A compositor's encoded band, for the gateway to put together with the others'.
 struct EncodedBand {
@@ -285,10 +337,9 @@ struct EncodedBand {
   ImageSize image;
   PixelRect rect;
   std::uint8_t encoding = 0;  ///< 1 JPEG, 2 zstd of RGB rows
-  std::uint8_t spacing_px = 1;
   Buffer payload;
   GOLDTHREAD_MESSAGE(EncodedBand, &EncodedBand::present, &EncodedBand::image, &EncodedBand::rect,
-                     &EncodedBand::encoding, &EncodedBand::spacing_px, &EncodedBand::payload)
+                     &EncodedBand::encoding, &EncodedBand::payload)
 };
 /// Serve the page (to the first compositor).
 struct OpenGateway {
