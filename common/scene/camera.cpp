@@ -20,6 +20,11 @@ glm::dvec3 unit(const glm::dvec3& v) {
   return glm::normalize(v / scale);
 }
 
+/// A pixel's edge at distance 1: half the image's height spans tan(fovy/2); pixels are square.
+double pixel_edge(const Camera& camera, ImageSize size) {
+  return 2 * std::tan(glm::radians(camera.fovy_deg) / 2) / size.height;
+}
+
 }  // namespace
 
 CameraFault camera_fault(const Camera& camera) {
@@ -50,11 +55,25 @@ CameraBasis camera_basis(const Camera& camera) {
 
 Ray camera_ray(const Camera& camera, ImageSize size, double x, double y) {
   const CameraBasis basis = camera_basis(camera);
-  // Half the image's height at distance 1 spans tan(fovy/2); pixels are square.
-  const double pixel = 2 * std::tan(glm::radians(camera.fovy_deg) / 2) / size.height;
+  const double pixel = pixel_edge(camera, size);
   const double right = (x - size.width * 0.5) * pixel;
   const double up = (size.height * 0.5 - y) * pixel;
   return {camera.position, glm::normalize(basis.forward + right * basis.right + up * basis.up)};
+}
+
+Projection::Projection(const Camera& camera, ImageSize size)
+    : basis_(camera_basis(camera)),
+      position_(camera.position),
+      centre_(size.width * 0.5, size.height * 0.5),
+      pixel_(pixel_edge(camera, size)) {}
+
+std::optional<glm::dvec2> Projection::at(const glm::dvec3& point_mm) const {
+  const glm::dvec3 seen = point_mm - position_;
+  const double depth = glm::dot(seen, basis_.forward);
+  if (!(depth > 0)) return {};
+  const double scale = 1 / (depth * pixel_);
+  return glm::dvec2(centre_.x + glm::dot(seen, basis_.right) * scale,
+                    centre_.y - glm::dot(seen, basis_.up) * scale);
 }
 
 Camera orbit(const Camera& camera, double degrees) {

@@ -4,6 +4,7 @@
 // units are millimetres, and pixels are square, so that the width follows from fovy and the size.
 
 #include <glm/glm.hpp>
+#include <optional>
 #include <string>
 
 #include "common/base/types.h"
@@ -42,6 +43,22 @@ CameraBasis camera_basis(const Camera& camera);
 /// The ray through (x, y), in pixels from the top left corner of an image of this size; pixel
 /// (i, j) has its centre at (i + 0.5, j + 0.5). Positions outside the image are as good as inside.
 Ray camera_ray(const Camera& camera, ImageSize size, double x, double y);
+
+/// Where points of the world are seen in an image of this size: the inverse of camera_ray.
+class Projection {
+ public:
+  /// `camera` must be without fault.
+  Projection(const Camera& camera, ImageSize size);
+  /// In pixels from the top left corner, inside the image or not; nothing for a point that is not
+  /// in front of the camera.
+  std::optional<glm::dvec2> at(const glm::dvec3& point_mm) const;
+
+ private:
+  CameraBasis basis_;
+  glm::dvec3 position_;
+  glm::dvec2 centre_;
+  double pixel_;  ///< a pixel's edge at distance 1
+};
 
 /// The camera turned by `degrees` about the axis through its target along `up`, counter-clockwise
 /// seen from the tip of `up`. Whole turns give the same camera to the bit.

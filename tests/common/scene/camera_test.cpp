@@ -43,6 +43,32 @@ TEST(Camera, TopAndBottomEdgesAreFovyApart) {
   }
 }
 
+TEST(Projection, FindsThePixelWhoseRayPassesThroughAPoint) {
+  const Camera camera = example();
+  for (const ImageSize size : {ImageSize{640, 480}, ImageSize{100, 900}}) {
+    const Projection projection(camera, size);
+    for (const auto& [x, y] : {std::pair{0.5, 0.5}, {320.25, 17.0}, {-90.0, 1000.0}}) {
+      const Ray ray = camera_ray(camera, size, x, y);
+      for (const double distance : {1e-3, 1.0, 700.0}) {
+        const auto seen = projection.at(ray.origin + distance * ray.direction);
+        ASSERT_TRUE(seen);
+        EXPECT_NEAR(seen->x, x, 1e-6);
+        EXPECT_NEAR(seen->y, y, 1e-6);
+      }
+    }
+  }
+}
+
+TEST(Projection, PointsBehindOrBesideTheCameraAreNotSeen) {
+  const Camera camera = example();
+  const CameraBasis basis = camera_basis(camera);
+  const Projection projection(camera, {640, 480});
+  EXPECT_FALSE(projection.at(camera.position));
+  EXPECT_FALSE(projection.at(camera.position - basis.forward));
+  EXPECT_FALSE(projection.at(camera.position - 0.01 * basis.forward + 10.0 * basis.right));
+  EXPECT_FALSE(projection.at(glm::dvec3(std::numeric_limits<double>::quiet_NaN())));
+}
+
 TEST(Camera, PixelsAreSquareAndXGrowsToTheRight) {
   const Camera camera = example();
   const CameraBasis basis = camera_basis(camera);
