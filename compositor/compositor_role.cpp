@@ -9,6 +9,8 @@
 #include "common/protocol/topology.h"
 #include "common/transport/shared_memory.h"
 #include "compositor/encode.h"
+#include "compositor/filter.h"
+#include "compositor/output_window.h"
 #include "compositor/reconstruct.h"
 
 namespace goldthread {
@@ -61,7 +63,7 @@ void CompositorRole::on(const BeginView& message) {
   const Band band = band_of(message.grid, topology.compositor_index(post_.rank()), compositors_);
   view_ = message;
   samples_.emplace(view_->grid, band);
-  told_level_.reset();
+  told_step_ = kNoStep;
   if (early_.empty() || early_.front().epoch > view_->epoch) return;
   for (const Samples& early : std::exchange(early_, {})) {
     if (early.epoch == view_->epoch) place(early);
@@ -83,44 +85,50 @@ void CompositorRole::on(Samples message) {
 }
 
 void CompositorRole::place(const Samples& message) {
-  const std::span samples(reinterpret_cast<const Sample*>(message.colors.data()),
-                          message.colors.size() / sizeof(Sample));
-  if (message.colors.size() % sizeof(Sample) != 0 ||
-      !samples_->place(message.tile, message.from, message.to, samples)) {
+  if (!samples_->place(message)) {
     throw FatalError({"rank " + std::to_string(post_.rank().value),
                       "was sent samples that do not fit tile " + std::to_string(message.tile.value),
                       "start the same build of goldthread on every host",
                       ExitStatus::kClusterFailed});
   }
-  const auto level = samples_->level();
-  if (!level || level == told_level_) return;
-  told_level_ = level;
-  post_.to_master(BandReady{view_->epoch, *level, estimate_squared_error(*samples_)});
+  const Step step = samples_->step();
+  if (step == told_step_) return;
+  told_step_ = step;
+  post_.to_master(BandReady{view_->epoch, step});
+}
+
+std::vector<float> CompositorRole::picture(Filter filter, ImageSize size, PixelRect& rect) const {
+  auto pixels = reconstruct(*samples_, filter, view_->background);
+  const ImageSize image = view_->grid.image;
+  const PixelRect band = samples_->rect();
+  rect = band_of_size(band, image, size);
+  if (size == image && filter != Filter::kBiquadratic) return pixels;
+  return resample(pixels, {band.width, band.height}, window_of(band, image, rect, size),
+                  {rect.width, rect.height}, filter);
 }
 
 void CompositorRole::on(const Present& message) {
   if (!view_ || message.epoch != view_->epoch || samples_->tiles().empty()) return;
-  const PixelRect rect = samples_->rect();
-  const auto pixels = reconstruct(*samples_, view_->background);
+  EncodedBand band;
+  const auto pixels = picture(message.filter, message.size, band.rect);
   const auto rgb = display_rgb8(pixels, view_->color_space);
   const Encoding encoding = message.lossless ? Encoding::kZstdRgb : Encoding::kJpeg;
-  EncodedBand band;
   band.present = message;
-  band.image = view_->grid.image;
-  band.rect = rect;
+  band.image = message.size;
   band.encoding = static_cast<std::uint8_t>(encoding);
-  band.spacing_px =
-      static_cast<std::uint8_t>(samples_->level().value_or(kCoarsestLevel).spacing_px());
-  band.payload = encode_pixels(rgb, {rect.width, rect.height}, encoding);
+  band.payload = encode_pixels(rgb, {band.rect.width, band.rect.height}, encoding);
   post_.to_compositor(Topology{compositors_, 1}.gateway(), std::move(band));
 }
 
 void CompositorRole::on(const CollectBand& message) {
   if (!view_ || message.epoch != view_->epoch) return;
-  const auto pixels = reconstruct(*samples_, view_->background);
-  BandPicture picture{message.epoch, samples_->rect(), Buffer(pixels.size() * sizeof(float))};
-  std::memcpy(picture.pixels.data(), pixels.data(), picture.pixels.size());
-  post_.to_master(std::move(picture));
+  BandPicture band{message.epoch, samples_->rect(), {}};
+  if (!samples_->tiles().empty()) {
+    const auto pixels = picture(message.filter, view_->grid.image, band.rect);
+    band.pixels = Buffer(pixels.size() * sizeof(float));
+    std::memcpy(band.pixels.data(), pixels.data(), band.pixels.size());
+  }
+  post_.to_master(std::move(band));
 }
 
 void CompositorRole::on(EncodedBand message) {
@@ -165,6 +173,9 @@ void CompositorRole::forward_input() {
       post.to_master(ViewerEdit{e.viewer, e.serial, std::move(e.edit_json)});
     }
     void operator()(SizeInput& e) const { post.to_master(ViewerSize{e.viewer, e.serial, e.size}); }
+    void operator()(DisplayInput& e) const {
+      post.to_master(ViewerDisplay{e.viewer, e.serial, e.display});
+    }
     void operator()(AudienceChange& e) const { post.to_master(Audience{e.viewers, e.ready}); }
   };
   for (GatewayEvent& event : gateway_->take_events()) std::visit(Forward{post_}, event);

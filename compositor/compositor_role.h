@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// A compositor rank: keeps the samples of its band, tells the master when a level of it is whole,
+// A compositor rank: keeps the samples of its band, tells the master when it has taken a step,
 // encodes it when told to. The first one also runs the gateway, through which input reaches the
 // master and pictures reach the pages. Knows neither how a sample came to be nor who asked for it.
 
@@ -38,6 +38,8 @@ class CompositorRole {
   void on(const Stop& message);
   void place(const Samples& message);
   void keep_early(Samples message);
+  /// The band in a picture of `size`, float RGBA, and where it lies there.
+  std::vector<float> picture(Filter filter, ImageSize size, PixelRect& rect) const;
   void forward_input();
 
   Post post_;
@@ -46,7 +48,7 @@ class CompositorRole {
   int compositors_ = 1;
   std::optional<BeginView> view_;
   std::optional<SampleArray> samples_;
-  std::optional<Level> told_level_;
+  Step told_step_ = kNoStep;
   /// Samples that overtook the BeginView of their epoch, on their way from another rank. All of one
   /// epoch, the newest: it shows that the master has given up the views before.
   std::vector<Samples> early_;

@@ -151,37 +151,41 @@ void Cluster::on(Rank, SceneCommitted message) {
   if (message.revision != revision_) return;
   features_ = std::move(message.features);
   kernel_ = std::move(message.kernel);
+  visible_points_ = std::move(message.visible_points);
 }
 
-void Cluster::begin_view(const Scene& scene, const TileGrid& grid, std::vector<Level> levels) {
-  costs_.fit(grid);
-  scheduler_.begin_view(grid, levels, costs_);
-  quanta_ = scheduler_.open();
+void Cluster::begin_view(const Scene& scene, const ViewRequest& request) {
+  costs_.fit(request.grid);
+  scheduler_.begin_view(request.grid, costs_);
   view_ = {};
   ++epoch_.value;
   view_.epoch = epoch_;
-  view_.grid = grid;
-  view_.levels = std::move(levels);
-  view_.tiles.resize(grid.count());
-  for (std::size_t i = 0; i < bands_.size(); ++i) {
-    const Band band = band_of(grid, static_cast<int>(i), topology_.compositors);
-    const PixelRect rect = band_rect(grid, band);
-    bands_[i] = {{}, 0, static_cast<double>(rect.width) * rect.height};
-  }
+  view_.grid = request.grid;
+  view_.tiles.resize(request.grid.count());
+  std::fill(bands_.begin(), bands_.end(), kNoStep);
   view_.begin = Clock::now();
-  const BeginView message{
-      view_.epoch, revision_, *scene.camera, grid, scene.image.background, scene.image.color_space};
+  const BeginView message{view_.epoch,
+                          revision_,
+                          *scene.camera,
+                          request.grid,
+                          request.refinement,
+                          request.update,
+                          request.frame,
+                          scene.image.background,
+                          scene.image.color_space};
+  send_to_workers(message);
+  for (int w = 0; w < topology_.workers; ++w) supply(w);
   for (int c = 0; c < topology_.compositors; ++c) {
     post_.to_compositor(topology_.compositor(c), message);
   }
-  send_to_workers(message);
+}
+
+void Cluster::refine_further() {
+  scheduler_.open_step(costs_);
   for (int w = 0; w < topology_.workers; ++w) supply(w);
 }
 
-void Cluster::cancel_view() {
-  scheduler_.begin_view(view_.grid, {}, costs_);
-  quanta_ = 0;
-}
+void Cluster::cancel_view() { scheduler_.cancel(); }
 
 void Cluster::supply(int worker) {
   while (const auto quantum = scheduler_.next(worker)) {
@@ -190,44 +194,58 @@ void Cluster::supply(int worker) {
   }
 }
 
+void Cluster::on(Rank, ViewTaken message) {
+  if (message.epoch != view_.epoch) return;
+  ++view_.workers_begun;
+  view_.taken = Clock::now() - view_.begin;
+}
+
 void Cluster::on(Rank from, TileDone message) {
   const int worker = topology_.worker_index(from);
   if (message.epoch != view_.epoch || message.tile.value >= view_.grid.count()) return;
-  if (!scheduler_.done(worker, message.tile, message.to)) return;
+  if (!scheduler_.done(worker, message.tile, message.to, message.quality.squared_error)) return;
   supply(worker);
-  costs_.record(message.tile, message.rays, std::chrono::microseconds(message.cost_us));
-  const double seconds = 1e-6 * message.cost_us;
+  costs_.record(message.tile, message.to, std::chrono::microseconds(message.cost_us));
   view_.rays += message.rays;
   view_.samples += message.samples;
   ViewState::Tile& tile = view_.tiles[message.tile.value];
   tile.worker = from;
-  tile.seconds += seconds;
+  tile.seconds += 1e-6 * message.cost_us;
+  tile.quality = message.quality;
   ranks_[static_cast<std::size_t>(from.value)].tiles += 1;
+  if (scheduler_.finished()) finish_step();
+}
+
+void Cluster::finish_step() {
+  StepState state;
+  // In the order of the tiles: the sum is the same whoever was first.
+  for (const ViewState::Tile& tile : view_.tiles) {
+    state.quality.squared_error += tile.quality.squared_error;
+    state.quality.squared_gradient += tile.quality.squared_gradient;
+  }
+  state.rays = view_.rays;
+  state.samples = view_.samples;
+  view_.steps.push_back(state);
+  events_.push_back(StepCast{});
+  note_held();
 }
 
 void Cluster::on(Rank from, BandReady message) {
   if (message.epoch != view_.epoch) return;
-  BandState& band = bands_.at(static_cast<std::size_t>(topology_.compositor_index(from)));
-  band.level = message.level;
-  band.squared_error = message.squared_error;
+  Step& band = bands_.at(static_cast<std::size_t>(topology_.compositor_index(from)));
+  band = std::max(band, message.step);
+  note_held();
+}
 
-  const auto holds = [&](Level level) {
-    return std::all_of(bands_.begin(), bands_.end(), [&](const BandState& state) {
-      return state.pixels == 0 || (state.level && state.level->log2_spacing <= level.log2_spacing);
-    });
-  };
-  const std::size_t before = view_.complete_levels;
-  while (!view_.finished() && holds(view_.levels[view_.complete_levels])) ++view_.complete_levels;
-  if (view_.complete_levels == before) return;
-  view_.complete = Clock::now() - view_.begin;
-  if (before == 0) view_.first_picture = view_.complete;
-  double sum = 0, pixels = 0;
-  for (const BandState& state : bands_) {
-    sum += state.squared_error * state.pixels;
-    pixels += state.pixels;
-  }
-  view_.squared_error = sum / pixels;
-  events_.push_back(LevelReady{});
+void Cluster::note_held() {
+  const Step all = *std::min_element(bands_.begin(), bands_.end());
+  // What a step is worth must be known too, which another rank tells.
+  const Step held = std::min(all, view_.cast());
+  if (held <= view_.held) return;
+  for (Step step = view_.held.next(); step <= held; step = step.next())
+    view_.steps[step.value - 1U].held = Clock::now() - view_.begin;
+  view_.held = held;
+  events_.push_back(StepHeld{});
 }
 
 void Cluster::on(Rank, RankFailed message) { throw FatalError(std::move(message.failure)); }
@@ -287,14 +305,9 @@ std::optional<ClusterEvent> Cluster::poll(std::chrono::microseconds at_most) {
   return event;
 }
 
-std::chrono::microseconds Cluster::predict_next_level() const {
-  if (view_.finished()) return std::chrono::microseconds{0};
-  const Level to = view_.levels[view_.complete_levels];
-  const Level from = view_.level().value_or(kNoLevel);
-  const PixelRect first = view_.grid.rect({0});
-  const auto rays = new_samples({first.width, first.height}, from, to).size();
+std::chrono::microseconds Cluster::predict(Step step) const {
   double total_us = 0;
-  for (std::uint32_t i = 0; i < view_.grid.count(); ++i) total_us += costs_.predict_us({i}, rays);
+  for (std::uint32_t i = 0; i < view_.grid.count(); ++i) total_us += costs_.predict_us({i}, step);
   int threads = 0;
   for (const RankState& state : ranks_) {
     if (state.role == Role::kWorker) threads += state.threads;
@@ -322,11 +335,6 @@ void Cluster::on(Rank from, Counters message) {
 bool Cluster::counters_complete() const {
   return std::all_of(ranks_.begin(), ranks_.end(),
                      [](const auto& r) { return r.counted || r.lost; });
-}
-
-double Cluster::progress() const {
-  if (quanta_ == 0) return 0;
-  return 1 - static_cast<double>(scheduler_.open()) / static_cast<double>(quanta_);
 }
 
 bool Cluster::stop() {

@@ -4,6 +4,7 @@
 // scenes, begins views and keeps every worker supplied with tiles. What a job (one picture, an
 // orbit, a session) needs to know comes out of poll() as events.
 
+#include <algorithm>
 #include <chrono>
 #include <deque>
 #include <functional>
@@ -50,28 +51,38 @@ struct RankState {
   std::vector<MessageCount> sent;  ///< as of that answer
 };
 
+/// What a picture was worth after a step: sums over its pixels, as TileQuality.
+struct StepState {
+  TileQuality quality;
+  std::uint64_t rays = 0;     ///< since the view began
+  std::uint64_t samples = 0;  ///< field evaluations, likewise
+  std::chrono::duration<double> held{0};  ///< from the view's begin until the compositors had it
+};
+
 /// What is known of the view that is being cast.
 struct ViewState {
   Epoch epoch;
   TileGrid grid;
-  std::vector<Level> levels;
   Clock::time_point begin;
-  std::size_t complete_levels = 0;  ///< of `levels`, held by the compositors
+  std::vector<StepState> steps;  ///< those that all tiles have taken
+  Step held = kNoStep;           ///< the compositors hold all of it
   std::uint64_t rays = 0;
   std::uint64_t samples = 0;
-  double squared_error = 0;  ///< estimated mean square, in units of 1, of the complete level
-  std::chrono::duration<double> first_picture{0};  ///< until the first level was complete
-  std::chrono::duration<double> complete{0};       ///< until the newest complete level was
+  int workers_begun = 0;  ///< have begun to cast it
+  std::chrono::duration<double> taken{0};  ///< from its begin until the last of them had said so
   struct Tile {
     Rank worker;
     double seconds = 0;
+    TileQuality quality;
   };
   std::vector<Tile> tiles;
 
-  bool finished() const { return complete_levels == levels.size(); }
-  std::optional<Level> level() const {
-    if (complete_levels == 0) return {};
-    return levels[complete_levels - 1];
+  Step cast() const { return {static_cast<std::uint16_t>(steps.size())}; }
+  double pixels() const { return double(grid.image.width) * grid.image.height; }
+  /// Of what the compositors hold; null before the first picture.
+  const StepState* shown() const {
+    const std::size_t known = std::min<std::size_t>(held.value, steps.size());
+    return known == 0 ? nullptr : &steps[known - 1];
   }
 };
 
@@ -79,10 +90,20 @@ struct ViewState {
 struct WorkerLost {
   Rank rank;
 };
-/// A further level of the view is complete at all compositors.
-struct LevelReady {};
-using ClusterEvent = std::variant<LevelReady, WorkerLost, BandPicture, GatewayOpened, ViewerCamera,
-                                  ViewerEdit, ViewerSize, Audience>;
+/// All tiles have taken the step that was open: what it is worth is known, another may be opened.
+struct StepCast {};
+/// The compositors hold a further step, all of it.
+struct StepHeld {};
+using ClusterEvent = std::variant<StepCast, StepHeld, WorkerLost, BandPicture, GatewayOpened,
+                                  ViewerCamera, ViewerEdit, ViewerSize, ViewerDisplay, Audience>;
+
+/// How a view is to be cast.
+struct ViewRequest {
+  TileGrid grid;
+  Refinement refinement;
+  Update update = Update::kAll;
+  std::uint32_t frame = 0;
+};
 
 class Cluster {
  public:
@@ -95,8 +116,10 @@ class Cluster {
   VolumeInfo load_volume(const SceneVolume& volume, const std::function<void(double)>& progress);
   /// Makes a resolved scene the one that later views show.
   void commit(const Scene& scene);
-  /// Drops the view in progress and begins another.
-  void begin_view(const Scene& scene, const TileGrid& grid, std::vector<Level> levels);
+  /// Drops the view in progress and begins another, with its first step.
+  void begin_view(const Scene& scene, const ViewRequest& request);
+  /// Opens the next step of the view, all tiles having taken the one before.
+  void refine_further();
   /// Stops handing out work of the view in progress: what is held stays as it is.
   void cancel_view();
 
@@ -107,17 +130,16 @@ class Cluster {
   /// Asks every rank what it has sent and how long it computed; poll() takes the answers in.
   void request_counters();
   bool counters_complete() const;
-  /// Quanta of the view that are done, as a share of all.
-  double progress() const;
-
-  /// Predicted time for the whole cluster to take the view to its next level.
-  std::chrono::microseconds predict_next_level() const;
+  /// Predicted time for the whole cluster to take the view through `step`.
+  std::chrono::microseconds predict(Step step) const;
 
   const ViewState& view() const { return view_; }
   const Topology& topology() const { return topology_; }
   const std::vector<RankState>& ranks() const { return ranks_; }
   const std::vector<std::string>& features() const { return features_; }
   const std::string& kernel() const { return kernel_; }
+  /// Places that the committed scene may show, mm.
+  const std::vector<glm::dvec3>& visible_points() const { return visible_points_; }
   Post& post() { return post_; }
 
   /// Ends the job on every other rank. True if none was lost.
@@ -131,6 +153,7 @@ class Cluster {
   void on(Rank from, VolumeLoaded message);
   void on(Rank from, VolumeMapped message);
   void on(Rank from, SceneCommitted message);
+  void on(Rank from, ViewTaken message);
   void on(Rank from, TileDone message);
   void on(Rank from, BandReady message);
   void on(Rank from, Counters message);
@@ -147,6 +170,8 @@ class Cluster {
   /// Handles one message if there is one; false if there was none.
   bool handle_one();
   void supply(int worker);
+  void finish_step();
+  void note_held();
 
   Post post_;
   Topology topology_;
@@ -161,19 +186,14 @@ class Cluster {
   std::uint32_t revision_ = 0;
   std::vector<std::string> features_;
   std::string kernel_;
+  std::vector<glm::dvec3> visible_points_;
 
   Liveness liveness_;
   CostHistory costs_;
   Scheduler scheduler_;
   Epoch epoch_;
   ViewState view_;
-  struct BandState {
-    std::optional<Level> level;
-    double squared_error = 0;
-    double pixels = 0;
-  };
-  std::vector<BandState> bands_;
-  std::size_t quanta_ = 0;  // of the view
+  std::vector<Step> bands_;  // what each compositor holds
 };
 
 }  // namespace goldthread

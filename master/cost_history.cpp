@@ -1,32 +1,44 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "master/cost_history.h"
 
+#include <algorithm>
+
 namespace goldthread {
 
 void CostHistory::fit(const TileGrid& grid) {
   if (grid == grid_) return;
   grid_ = grid;
-  us_per_ray_.assign(grid.count(), -1);
-  known_ = 0;
-  known_sum_ = 0;
+  steps_.clear();
 }
 
-void CostHistory::record(TileId tile, std::uint64_t rays, std::chrono::microseconds cost) {
-  if (tile.value >= us_per_ray_.size() || rays == 0) return;
-  double& entry = us_per_ray_[tile.value];
+void CostHistory::record(TileId tile, Step step, std::chrono::microseconds cost) {
+  if (tile.value >= grid_.count() || step == kNoStep) return;
+  if (steps_.size() < step.value) steps_.resize(step.value);
+  StepCosts& costs = steps_[step.value - 1U];
+  if (costs.us.empty()) costs.us.assign(grid_.count(), -1);
+  float& entry = costs.us[tile.value];
   if (entry < 0)
-    ++known_;
+    ++costs.known;
   else
-    known_sum_ -= entry;
-  entry = static_cast<double>(cost.count()) / static_cast<double>(rays);
-  known_sum_ += entry;
+    costs.known_sum -= double(entry);
+  entry = static_cast<float>(cost.count());
+  costs.known_sum += double(entry);
 }
 
-double CostHistory::predict_us(TileId tile, std::uint64_t rays) const {
-  if (known_ == 0 || tile.value >= us_per_ray_.size()) return 0;
-  const double own = us_per_ray_[tile.value];
-  const double per_ray = own >= 0 ? own : known_sum_ / static_cast<double>(known_);
-  return per_ray * static_cast<double>(rays);
+double CostHistory::predict_us(TileId tile, Step step) const {
+  for (std::size_t i = std::min<std::size_t>(step.value, steps_.size()); i-- > 0;) {
+    const StepCosts& costs = steps_[i];
+    if (costs.known == 0 || tile.value >= costs.us.size()) continue;
+    const double own = double(costs.us[tile.value]);
+    return own >= 0 ? own : costs.known_sum / double(costs.known);
+  }
+  return 0;
+}
+
+double CostHistory::predict_all_us(TileId tile, Step step) const {
+  double sum = 0;
+  for (Step at{1}; at <= step; at = at.next()) sum += predict_us(tile, at);
+  return sum;
 }
 
 }  // namespace goldthread

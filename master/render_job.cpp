@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "master/render_job.h"
 
+#include <algorithm>
+#include <cmath>
 #include <cstring>
-
-#include "master/levels.h"
 
 namespace goldthread {
 namespace {
@@ -16,19 +16,38 @@ void check_interrupted(const RenderRequest& request) {
       {"render", "was interrupted", "nothing was written", ExitStatus::kClusterFailed});
 }
 
+/// How far a picture has come, on the way from its first estimate to what is wanted.
+double progress_of(const ViewState& view, const StopRule& rule) {
+  if (view.steps.size() < 2) return 0;
+  const StepState& last = view.steps.back();
+  const double by_rays =
+      rule.samples > 0 || rule.sampling == Sampling::kEveryPixel
+          ? double(last.rays) / (std::max(1.0, double(rule.samples)) * view.pixels())
+          : 0;
+  const double first = rms_error(view.steps[1].quality.squared_error, view.pixels());
+  const double now = rms_error(last.quality.squared_error, view.pixels());
+  const double by_error =
+      now > 0 && first > rule.error ? std::log(first / now) / std::log(first / rule.error) : 0;
+  return std::clamp(std::max(by_rays, by_error), 0.0, 1.0);
+}
+
+/// Refines until the rule or the time says stop, and the compositors hold it all.
 void cast_view(Cluster& cluster, const RenderRequest& request) {
   const ViewState& view = cluster.view();
   const auto time_is_up = [&] {
-    return request.time && view.complete_levels > 0 && Clock::now() - view.begin >= *request.time;
+    return request.time && view.held > kNoStep && Clock::now() - view.begin >= *request.time;
   };
-  // The last samples may be composed before the master hears what they cost.
-  while (!(view.finished() && cluster.progress() == 1) && !time_is_up()) {
+  bool enough = false;
+  while (!(enough && view.held == view.cast()) && !time_is_up()) {
     const auto event = cluster.poll(kPollTime);
-    if (event && std::holds_alternative<WorkerLost>(*event)) {
-      request.worker_lost(std::get<WorkerLost>(*event).rank);
-    }
-    request.progress(cluster.progress());
     check_interrupted(request);
+    if (!event) continue;
+    if (const auto* lost = std::get_if<WorkerLost>(&*event)) request.worker_lost(lost->rank);
+    if (!std::holds_alternative<StepCast>(*event)) continue;
+    request.progress(progress_of(view, request.stop));
+    const StepState& last = view.steps.back();
+    enough = is_enough(request.stop, view.cast(), last.quality, last.rays, view.pixels());
+    if (!enough) cluster.refine_further();
   }
   cluster.cancel_view();
 }
@@ -36,7 +55,7 @@ void cast_view(Cluster& cluster, const RenderRequest& request) {
 void collect(Cluster& cluster, const RenderRequest& request, RenderedFrame& frame) {
   const Topology& topology = cluster.topology();
   for (int c = 0; c < topology.compositors; ++c) {
-    cluster.post().to_compositor(topology.compositor(c), CollectBand{cluster.view().epoch});
+    cluster.post().to_compositor(topology.compositor(c), CollectBand{cluster.view().epoch, request.filter});
   }
   const auto width = static_cast<std::size_t>(frame.size.width);
   for (int open = topology.compositors; open > 0;) {
@@ -61,7 +80,7 @@ void collect(Cluster& cluster, const RenderRequest& request, RenderedFrame& fram
 }  // namespace
 
 RenderedFrame render_frame(Cluster& cluster, const Scene& scene, const RenderRequest& request) {
-  cluster.begin_view(scene, request.grid, request.time ? progressive_levels() : direct_levels());
+  cluster.begin_view(scene, {request.grid, refinement_of(request.stop)});
   cast_view(cluster, request);
   RenderedFrame frame;
   frame.size = request.grid.image;

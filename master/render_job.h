@@ -7,12 +7,15 @@
 #include <vector>
 
 #include "master/cluster.h"
+#include "master/stop_rule.h"
 
 namespace goldthread {
 
 struct RenderRequest {
   TileGrid grid;
-  /// Stop after this long with the finest level that is complete by then, but at least the first.
+  StopRule stop;
+  Filter filter = Filter::kBilinear;
+  /// Stop after this long with what is there by then, but at least the first step.
   std::optional<std::chrono::duration<double>> time;
   std::function<void(double fraction)> progress = [](double) {};
   std::function<void(Rank rank)> worker_lost = [](Rank) {};

@@ -1,26 +1,39 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "master/report.h"
 
-#include <cmath>
 #include <map>
 #include <nlohmann/json.hpp>
 
 #include "master/names.h"
+#include "master/stop_rule.h"
 
 namespace goldthread {
 namespace {
 
 using Json = nlohmann::ordered_json;
 
+Json steps_of(const ViewState& view) {
+  Json list = Json::array();
+  for (const StepState& step : view.steps) {
+    list.push_back({{"rays", step.rays},
+                    {"estimatedError", rms_error(step.quality.squared_error, view.pixels())},
+                    {"seconds", step.held.count()}});
+  }
+  return list;
+}
+
 Json frames_of(const std::vector<ViewState>& frames) {
   Json list = Json::array();
   for (const ViewState& view : frames) {
-    list.push_back({{"seconds", view.complete.count()},
+    const StepState* shown = view.shown();
+    list.push_back({{"seconds", shown != nullptr ? shown->held.count() : 0},
                     {"rays", view.rays},
                     {"samples", view.samples},
+                    {"samplesPerPixel", double(view.rays) / view.pixels()},
                     {"estimatedError", estimated_error(view)},
-                    {"firstPictureSeconds", view.first_picture.count()},
-                    {"spacing", view.level().value_or(kCoarsestLevel).spacing_px()}});
+                    {"firstPictureSeconds", view.steps.empty() ? 0 : view.steps[0].held.count()},
+                    {"takenSeconds", view.taken.count()},
+                    {"steps", steps_of(view)}});
   }
   return list;
 }
@@ -60,7 +73,10 @@ Json bytes_of(const std::vector<RankState>& ranks) {
 
 }  // namespace
 
-double estimated_error(const ViewState& view) { return 255 * std::sqrt(view.squared_error); }
+double estimated_error(const ViewState& view) {
+  const StepState* shown = view.shown();
+  return shown != nullptr ? rms_error(shown->quality.squared_error, view.pixels()) : 255;
+}
 
 std::string report_json(const Cluster& cluster, const std::vector<ViewState>& frames,
                         double load_seconds) {

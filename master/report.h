@@ -9,7 +9,8 @@
 
 namespace goldthread {
 
-/// The estimated RMS error of a view, in 1/255 of full scale.
+/// The estimated RMS error of what the compositors hold of a view, in 1/255; 255 before the first
+/// picture.
 double estimated_error(const ViewState& view);
 
 /// frames, features, kernel, ranks, tiles (of the last frame), bytes by kind of message (of the

@@ -2,88 +2,130 @@
 #include "master/scheduler.h"
 
 #include <algorithm>
-#include <functional>
-#include <map>
+#include <numeric>
 #include <utility>
 
 namespace goldthread {
 
 Scheduler::Scheduler(const std::vector<int>& capacity) {
-  for (const int places : capacity) workers_.push_back({places, {}});
+  for (const int places : capacity) {
+    Worker worker;
+    worker.capacity = places;
+    workers_.push_back(std::move(worker));
+  }
 }
 
-void Scheduler::begin_view(const TileGrid& grid, std::span<const Level> levels,
-                           const CostHistory& costs) {
+void Scheduler::begin_view(const TileGrid& grid, const CostHistory& costs) {
   for (Worker& worker : workers_) worker.held.clear();
-  queue_.clear();
-  returned_.clear();
-  done_.clear();
-  next_ = 0;
-  Level from = kNoLevel;
-  for (const Level to : levels) {
-    append_level(grid, from, to, costs);
-    done_.emplace_back(to, 0);
-    from = to;
-  }
-  open_ = queue_.size();
+  tiles_.assign(grid.count(), {});
+  step_ = Step{1};
+  queue(costs);
 }
 
-void Scheduler::append_level(const TileGrid& grid, Level from, Level to, const CostHistory& costs) {
-  std::vector<std::pair<double, Quantum>> ordered;
-  std::map<std::pair<int, int>, std::uint64_t> rays_of_size;  // few distinct sizes in a grid
-  for (std::uint32_t i = 0; i < grid.count(); ++i) {
-    const TileId tile{i};
-    const PixelRect rect = grid.rect(tile);
-    auto& rays = rays_of_size[{rect.width, rect.height}];
-    if (rays == 0) rays = new_samples({rect.width, rect.height}, from, to).size();
-    ordered.push_back({costs.predict_us(tile, rays), {tile, from, to}});
+void Scheduler::open_step(const CostHistory& costs) {
+  step_ = step_.next();
+  queue(costs);
+}
+
+void Scheduler::cancel() {
+  for (Worker& worker : workers_) {
+    worker.held.clear();
+    worker.waiting.clear();
   }
-  std::stable_sort(ordered.begin(), ordered.end(),
-                   [](const auto& a, const auto& b) { return a.first > b.first; });
-  for (const auto& [cost, quantum] : ordered) queue_.push_back(quantum);
+  unowned_.clear();
+  open_ = 0;
+}
+
+void Scheduler::queue(const CostHistory& costs) {
+  for (Worker& worker : workers_) {
+    worker.waiting.clear();
+    worker.waiting_us = 0;
+  }
+  unowned_.clear();
+  std::vector<double> urgency(tiles_.size());
+  for (std::uint32_t i = 0; i < tiles_.size(); ++i) {
+    Tile& tile = tiles_[i];
+    tile.cost_us = costs.predict_us({i}, step_);
+    tile.all_cost_us = costs.predict_all_us({i}, step_);
+    // Errors are sums over the tile: its area is in them.
+    urgency[i] =
+        step_ == Step{1} ? tile.cost_us : tile.squared_error / std::max(tile.cost_us, 1.0);
+  }
+  std::vector<std::uint32_t> order(tiles_.size());
+  std::iota(order.begin(), order.end(), 0U);
+  std::stable_sort(order.begin(), order.end(),
+                   [&](std::uint32_t a, std::uint32_t b) { return urgency[a] > urgency[b]; });
+  for (const std::uint32_t i : order) {
+    if (tiles_[i].owner < 0) {
+      unowned_.push_back({i});
+      continue;
+    }
+    Worker& owner = workers_[static_cast<std::size_t>(tiles_[i].owner)];
+    owner.waiting.push_back({i});
+    owner.waiting_us += tiles_[i].cost_us;
+  }
+  open_ = tiles_.size();
+}
+
+std::optional<TileId> Scheduler::take(int worker) {
+  Worker& own = workers_[static_cast<std::size_t>(worker)];
+  if (!own.waiting.empty()) {
+    const TileId tile = own.waiting.front();
+    own.waiting.pop_front();
+    own.waiting_us -= tiles_[tile.value].cost_us;
+    return tile;
+  }
+  if (unowned_.empty()) return take_over(worker);
+  const TileId tile = unowned_.front();
+  unowned_.pop_front();
+  return tile;
+}
+
+std::optional<TileId> Scheduler::take_over(int worker) {
+  const auto busiest =
+      std::max_element(workers_.begin(), workers_.end(), [](const Worker& a, const Worker& b) {
+        return a.waiting_us / std::max(1, a.capacity) < b.waiting_us / std::max(1, b.capacity);
+      });
+  if (busiest->waiting.empty() || std::cmp_equal(busiest - workers_.begin(), worker)) return {};
+  // The last one waits longest: until its owner has come through all before it.
+  const TileId tile = busiest->waiting.back();
+  const double wait_us = busiest->waiting_us / std::max(1, busiest->capacity - 1);
+  if (tiles_[tile.value].all_cost_us >= wait_us) return {};
+  busiest->waiting.pop_back();
+  busiest->waiting_us -= tiles_[tile.value].cost_us;
+  return tile;
 }
 
 std::optional<Quantum> Scheduler::next(int worker) {
   Worker& taker = workers_.at(static_cast<std::size_t>(worker));
-  if (std::cmp_greater_equal(taker.held.size(), taker.capacity)) return {};
-  std::size_t place = next_;
-  if (!returned_.empty()) {
-    place = returned_.back();
-    returned_.pop_back();
-  } else if (next_ < queue_.size()) {
-    ++next_;
-  } else {
-    return {};
-  }
-  taker.held.push_back(place);
-  return queue_[place];
+  if (taker.lost || std::cmp_greater_equal(taker.held.size(), taker.capacity)) return {};
+  const auto tile = take(worker);
+  if (!tile) return {};
+  taker.held.push_back(*tile);
+  tiles_[tile->value].owner = worker;
+  return Quantum{*tile, Step{static_cast<std::uint16_t>(step_.value - 1)}, step_};
 }
 
-bool Scheduler::done(int worker, TileId tile, Level to) {
+bool Scheduler::done(int worker, TileId tile, Step to, double squared_error) {
   auto& held = workers_.at(static_cast<std::size_t>(worker)).held;
-  const auto found = std::find_if(held.begin(), held.end(), [&](std::size_t place) {
-    return queue_[place].tile == tile && queue_[place].to == to;
-  });
-  if (found == held.end()) return false;
+  const auto found = std::find(held.begin(), held.end(), tile);
+  if (found == held.end() || to != step_) return false;
   held.erase(found);
+  tiles_[tile.value].squared_error = squared_error;
   --open_;
-  for (auto& [level, count] : done_) count += level == to ? 1 : 0;
   return true;
 }
 
 void Scheduler::worker_lost(int worker) {
   Worker& lost = workers_.at(static_cast<std::size_t>(worker));
-  returned_.insert(returned_.end(), lost.held.begin(), lost.held.end());
-  std::sort(returned_.begin(), returned_.end(), std::greater<>());
+  lost.lost = true;
+  unowned_.insert(unowned_.begin(), lost.waiting.begin(), lost.waiting.end());
+  unowned_.insert(unowned_.begin(), lost.held.begin(), lost.held.end());
   lost.held.clear();
-  lost.capacity = 0;
-}
-
-std::size_t Scheduler::done_at(Level level) const {
-  for (const auto& [at, count] : done_) {
-    if (at == level) return count;
-  }
-  return 0;
+  lost.waiting.clear();
+  lost.waiting_us = 0;
+  for (Tile& tile : tiles_)
+    if (tile.owner == worker) tile.owner = -1;
 }
 
 }  // namespace goldthread

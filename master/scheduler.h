@@ -1,13 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// Who casts which tile next. Tiles of a level are handed out first come, first served, in
-// descending order of their predicted cost (longest first), then those of the next level; each
-// worker holds a spare one. Pure: no clock, no transport. Invariant: of a view, each (tile, level)
-// is given out once, or again only when its worker was lost, and is counted as done once.
+// Who casts which tile next. All tiles take a step before any takes the next, so that what a
+// picture holds after a step depends on nobody's speed. Within a step the order is: at the first
+// step of a view descending predicted cost (longest first), after that descending (estimated error
+// × area) / predicted cost. A tile stays with the worker that holds its state; a worker with nothing
+// left takes over another's where casting the earlier steps again is quicker than waiting. Pure: no
+// clock, no transport. Invariant: each (tile, step) of a view is counted as done once.
 
 #include <cstdint>
+#include <deque>
 #include <optional>
-#include <span>
 #include <vector>
 
 #include "common/tile/tile_grid.h"
@@ -18,8 +20,8 @@ namespace goldthread {
 /// A piece of work as the scheduler sees it.
 struct Quantum {
   TileId tile;
-  Level from;
-  Level to;
+  Step from;
+  Step to;
   bool operator==(const Quantum&) const = default;
 };
 
@@ -28,36 +30,50 @@ class Scheduler {
   /// `capacity[w]`: how many quanta worker w may hold at once, its spare one included.
   explicit Scheduler(const std::vector<int>& capacity);
 
-  /// Forgets the old view and everything in flight. Levels run through `levels` (coarse to fine, at
-  /// least one); the order within each follows `costs`.
-  void begin_view(const TileGrid& grid, std::span<const Level> levels, const CostHistory& costs);
+  /// Forgets the old view and everything in flight; the first step is open.
+  void begin_view(const TileGrid& grid, const CostHistory& costs);
+  /// Opens the next step; the one before must be finished.
+  void open_step(const CostHistory& costs);
+  /// Nothing of the view is given out any more.
+  void cancel();
+
   /// The next quantum for `worker`, if it has room and there is work.
   std::optional<Quantum> next(int worker);
   /// `worker` has finished a quantum; anything it does not hold is ignored. True if it was held.
-  bool done(int worker, TileId tile, Level to);
-  /// What `worker` held is given out again, first of all and in the same order; it gets nothing
-  /// any more.
+  /// `squared_error` is the tile's, summed over its pixels.
+  bool done(int worker, TileId tile, Step to, double squared_error);
+  /// What `worker` held is given out again, first of all; it gets nothing any more.
   void worker_lost(int worker);
 
-  /// Quanta of the view that are not done yet.
+  /// The step that is open.
+  Step step() const { return step_; }
+  /// Its quanta that are not done yet.
   std::size_t open() const { return open_; }
-  /// Tiles of a level that are done.
-  std::size_t done_at(Level level) const;
   bool finished() const { return open_ == 0; }
 
  private:
   struct Worker {
     int capacity = 0;
-    std::vector<std::size_t> held;  // places in queue_
+    bool lost = false;
+    std::vector<TileId> held;
+    std::deque<TileId> waiting;  ///< those whose state it holds, the most urgent first
+    double waiting_us = 0;
   };
-  void append_level(const TileGrid& grid, Level from, Level to, const CostHistory& costs);
+  struct Tile {
+    int owner = -1;  ///< worker that holds its state
+    double squared_error = 0;
+    double cost_us = 0;      ///< predicted, of the open step
+    double all_cost_us = 0;  ///< of this and all earlier steps: what a newcomer would spend
+  };
+  void queue(const CostHistory& costs);
+  std::optional<TileId> take(int worker);
+  std::optional<TileId> take_over(int worker);
 
   std::vector<Worker> workers_;
-  std::vector<Quantum> queue_;  // in order; those before next_ are given out
-  std::size_t next_ = 0;
-  std::vector<std::size_t> returned_;  // of lost workers, to be given out first, from the back
+  std::vector<Tile> tiles_;
+  std::deque<TileId> unowned_;  ///< in order
+  Step step_ = kNoStep;
   std::size_t open_ = 0;
-  std::vector<std::pair<Level, std::size_t>> done_;
 };
 
 }  // namespace goldthread

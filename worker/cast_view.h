@@ -6,7 +6,7 @@
 
 #include "common/tile/refinement.h"
 #include "common/tile/tile_grid.h"
-#include "worker/refinement/tile_plane.h"
+#include "worker/refinement/tile_lattice.h"
 #include "worker/sample_source.h"
 
 namespace goldthread {

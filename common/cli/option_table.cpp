@@ -24,6 +24,9 @@ constexpr std::uint8_t kBoth = kRenders | kServes;
 constexpr std::uint8_t kBenches = command_bit(Command::kBench);
 constexpr std::uint8_t kAll = kBoth | command_bit(Command::kInfo) | kBenches;
 
+/// Below it nothing that is displayed can change.
+constexpr double kLeastError = 0.01;
+
 constexpr std::string_view kPicture = "Picture";
 constexpr std::string_view kQuality = "Quality";
 constexpr std::string_view kCluster = "Cluster";
@@ -91,21 +94,6 @@ Outcome refuse(std::string_view what, std::string_view instead) {
   return not_in_this_version(what, instead);
 }
 
-Outcome apply_sampling(Options& options, const std::string& text) {
-  if (text == "adaptive") return refuse("adaptive sampling", "use subdivision");
-  return read_choice<Sampling>(
-      text, {{"subdivision", Sampling::kSubdivision}, {"every-pixel", Sampling::kEveryPixel}},
-      options.sampling);
-}
-
-Outcome apply_samples(Options& options, const std::string& text) {
-  Outcome bad = read_integer(text, 1, 1 << 20, options.samples);
-  if (!bad && *options.samples > 1) {
-    return refuse("more than one sample per pixel", "use --samples 1");
-  }
-  return bad;
-}
-
 /// Tiles hold whole squares of the coarsest level's samples.
 Outcome apply_tile(Options& options, const std::string& text) {
   constexpr int kCoarsestSpacing = 16;
@@ -120,13 +108,6 @@ Outcome apply_tile(Options& options, const std::string& text) {
   return {};
 }
 
-Outcome apply_update(Options&, const std::string& text) {
-  int percent = 100;
-  Outcome bad = read_choice<int>(text, {{"100", 100}, {"50", 50}, {"25", 25}}, percent);
-  if (!bad && percent < 100) return refuse("partial updating", "use --update 100");
-  return bad;
-}
-
 Outcome apply_bypass(Options&, const std::string& text) {
   if (text == "none") return {};
   return refuse("by-passing roles", "leave --bypass out");
@@ -139,6 +120,33 @@ Outcome apply_data(Options&, const std::string& text) {
 }
 
 // ---- The others ----
+
+Outcome apply_sampling(Options& options, const std::string& text) {
+  return read_choice<Sampling>(text,
+                               {{"adaptive", Sampling::kAdaptive},
+                                {"subdivision", Sampling::kSubdivision},
+                                {"every-pixel", Sampling::kEveryPixel}},
+                               options.sampling);
+}
+
+Outcome apply_filter(Options& options, const std::string& text) {
+  return read_choice<Filter>(text,
+                             {{"box", Filter::kBox},
+                              {"bilinear", Filter::kBilinear},
+                              {"biquadratic", Filter::kBiquadratic},
+                              {"piecewise-quadratic", Filter::kPiecewiseQuadratic},
+                              {"bicubic", Filter::kBicubic}},
+                             options.filter);
+}
+
+Outcome apply_update(Options& options, const std::string& text) {
+  return read_choice<Update>(text,
+                             {{"100", Update::kAll},
+                              {"50", Update::kHalf},
+                              {"25", Update::kQuarter},
+                              {"frameless", Update::kFrameless}},
+                             options.update);
+}
 
 Outcome apply_size(Options& options, const std::string& text) {
   constexpr int kMaxEdge = 16384;
@@ -256,15 +264,25 @@ constexpr OptionRow kTable[] = {
     {"orbit", "--orbit", "N[,DEGREES]", kPicture,
      "N frames turning DEGREES [360] in all about the target and up", kRenders, apply_orbit},
     {"error", "--error", "E", kQuality, "Stop refining at this estimated RMS error, in 1/255 [0.5]",
-     kBoth, [](Options& o, const std::string& t) { return read_real(t, 0, 255, o.error); }},
-    {"samples", "--samples", "N", kQuality, "Stop after N samples per pixel", kBoth, apply_samples},
+     kBoth,
+     [](Options& o, const std::string& t) { return read_real(t, kLeastError, 255, o.error); }},
+    {"samples", "--samples", "N", kQuality,
+     "At most N samples in a pixel, and on average; with every-pixel N in each [1 there]", kBoth,
+     [](Options& o, const std::string& t) { return read_integer(t, 1, 1 << 20, o.samples); }},
     {"time", "--time", "S", kQuality, "Stop after S seconds", kBoth, apply_time},
     {"step", "--step", "L", kQuality,
      "Upper bound of the ray step in mm; 0 lets the error target choose [0]", kBoth, apply_step},
-    {"sampling", "--sampling", "HOW", kQuality, "subdivision or every-pixel [subdivision]", kBoth,
+    {"sampling", "--sampling", "HOW", kQuality,
+     "adaptive, subdivision (conventional, for comparison) or every-pixel [adaptive]", kBoth,
      apply_sampling},
+    {"filter", "--filter", "NAME", kQuality,
+     "How pixels come from samples: box, bilinear, biquadratic, piecewise-quadratic or bicubic "
+     "[bilinear]",
+     kBoth, apply_filter},
     {"update", "--update", "PERCENT", kQuality,
-     "Share of samples updated per displayed frame [100]", kBoth, apply_update},
+     "Share of samples updated per displayed frame while the view moves: 100, 50, 25, or frameless "
+     "[100]",
+     kServes, apply_update},
     {"workers", "--workers", "N", kCluster, "Worker ranks, single process only [1]", kBoth,
      [](Options& o, const std::string& t) { return read_integer(t, 1, 4096, o.workers); }},
     {"threads", "--threads", "N", kCluster,

@@ -12,13 +12,13 @@
 
 #include "common/base/result.h"
 #include "common/base/types.h"
+#include "common/tile/refinement.h"
 
 namespace goldthread {
 
 enum class Command : std::uint8_t { kRender, kServe, kInfo, kBench };
 enum class LogLevel : std::uint8_t { kError, kWarn, kInfo, kDebug };
 enum class Schedule : std::uint8_t { kSquares, kRows };
-enum class Sampling : std::uint8_t { kSubdivision, kEveryPixel };
 
 /// N frames, frame i turned by i · degrees / frames.
 struct Orbit {
@@ -50,9 +50,11 @@ struct Options {
   int compositors = 1;
   int tile_px = 64;
   Schedule schedule = Schedule::kSquares;
-  Sampling sampling = Sampling::kSubdivision;
+  Sampling sampling = Sampling::kAdaptive;
   double error = 0.5;          ///< estimated RMS error in 1/255
   std::optional<int> samples;  ///< per pixel
+  Filter filter = Filter::kBilinear;
+  Update update = Update::kAll;
   std::optional<double> time_s;
   std::optional<Orbit> orbit;
 

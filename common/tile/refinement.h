@@ -54,6 +54,8 @@ struct Step {
   static constexpr auto fields() { return std::tuple{&Step::value}; }
 };
 constexpr Step kNoStep{0};
+/// The first two steps cast a grid of one ray in 16×16 and in 8×8 pixels.
+constexpr Step kFirstAdaptiveStep{3};
 constexpr Step kLastStep{200};  ///< far beyond what a lifetime computes
 
 struct Refinement {

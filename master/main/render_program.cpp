@@ -116,6 +116,8 @@ void run_render(Cluster& cluster, const Options& options) {
 
   RenderRequest request;
   request.grid = grid_of(options, scene.image.size);
+  request.stop = stop_rule_of(options);
+  request.filter = options.filter;
   if (options.time_s) request.time = std::chrono::duration<double>(*options.time_s);
   request.interrupted = interrupted;
   request.worker_lost = log_lost_worker;
@@ -127,9 +129,11 @@ void run_render(Cluster& cluster, const Options& options) {
     scene.camera = goldthread::orbit(first, i * orbit.degrees / orbit.frames);
     RenderedFrame frame = render_frame(cluster, scene, request);
     write_frame(output.path(i), scene, frame);
-    spdlog::info("{}: {}×{}, {} rays, {} samples, {:.0f} ms", output.path(i).string(),
-                 frame.size.width, frame.size.height, count_of(frame.view.rays),
-                 count_of(frame.view.samples), 1e3 * frame.view.complete.count());
+    const StepState* shown = frame.view.shown();
+    spdlog::info("{}: {}×{}, error ± {:.2f}/255, {} rays ({:.2f} a pixel), {:.0f} ms",
+                 output.path(i).string(), frame.size.width, frame.size.height,
+                 estimated_error(frame.view), count_of(frame.view.rays),
+                 double(frame.view.rays) / frame.view.pixels(), 1e3 * shown->held.count());
     views.push_back(std::move(frame.view));
   }
   if (options.report) write_report(cluster, *options.report, views, load_seconds);

@@ -19,6 +19,10 @@ TileGrid grid_of(const Options& options, ImageSize image) {
                                              : TileGrid::squares(image, options.tile_px);
 }
 
+StopRule stop_rule_of(const Options& options) {
+  return {options.sampling, options.error, static_cast<std::uint32_t>(options.samples.value_or(0))};
+}
+
 void log_volume(const VolumeInfo& info) {
   const glm::ivec3 size = info.geometry.size;
   spdlog::info("{}: {}×{}×{} {}, values {:g} … {:g}", info.file, size.x, size.y, size.z,

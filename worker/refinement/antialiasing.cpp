@@ -26,11 +26,11 @@ double bend_between(const Shown& before, const Shown& at, const Shown& after) {
 
 /// Calls what(x, y) for the pixels of each square.
 template <class What>
-void for_pixels(const TilePlane& plane, std::span<const Square> squares, const What& what) {
+void for_pixels(const TileLattice& lattice, std::span<const Square> squares, const What& what) {
   for (const Square square : squares)
     for (int y = square.y; y < square.y + 2; ++y)
       for (int x = square.x; x < square.x + 2; ++x)
-        if (plane.is_pixel(x, y)) what(x, y);
+        if (lattice.is_pixel(x, y)) what(x, y);
 }
 
 }  // namespace
@@ -54,18 +54,18 @@ std::vector<ApronPixel> Antialiasing::wanted_apron(std::span<const Square> squar
   return wanted;
 }
 
-double Antialiasing::bend_of(TilePlane& plane, int x, int y) {
-  const Shown& centre = plane.at(x, y);
+double Antialiasing::bend_of(TileLattice& lattice, int x, int y) {
+  const Shown& centre = lattice.at(x, y);
   const auto before = [&](ApronPixel apron, int bx, int by) -> const Shown& {
-    if (bx >= 0 && by >= 0) return plane.at(bx, by);
+    if (bx >= 0 && by >= 0) return lattice.at(bx, by);
     const auto& known = apron_.at(apron);
     return known ? *known : centre;
   };
-  return std::max(bend_between(before({-1, y}, x - 1, y), centre, plane.at(x + 1, y)),
-                  bend_between(before({x, -1}, x, y - 1), centre, plane.at(x, y + 1)));
+  return std::max(bend_between(before({-1, y}, x - 1, y), centre, lattice.at(x + 1, y)),
+                  bend_between(before({x, -1}, x, y - 1), centre, lattice.at(x, y + 1)));
 }
 
-std::vector<PixelOrder> Antialiasing::choose(TilePlane& plane, std::span<const Square> squares,
+std::vector<PixelOrder> Antialiasing::choose(TileLattice& lattice, std::span<const Square> squares,
                                              const StepPlan& plan, std::uint32_t most) {
   std::vector<PixelOrder> orders;
   const double share = squared_share();
@@ -75,18 +75,18 @@ std::vector<PixelOrder> Antialiasing::choose(TilePlane& plane, std::span<const S
       orders.push_back({sum.place(), sum.count(), sum.count() + more});
   }
   if (most <= kFirstSamples) return orders;
-  for_pixels(plane, squares, [&](int x, int y) {
+  for_pixels(lattice, squares, [&](int x, int y) {
     const SampleOffset place{static_cast<std::uint16_t>(x), static_cast<std::uint16_t>(y)};
-    if (find(place) != nullptr || bend_of(plane, x, y) <= double(plan.edge)) return;
-    orders.push_back({place, plane.known(x, y) ? 1U : 0U, 1 + kFirstSamples});
+    if (find(place) != nullptr || bend_of(lattice, x, y) <= double(plan.edge)) return;
+    orders.push_back({place, lattice.known(x, y) ? 1U : 0U, 1 + kFirstSamples});
   });
   return orders;
 }
 
-std::vector<PixelOrder> Antialiasing::choose_all(const TilePlane& plane,
+std::vector<PixelOrder> Antialiasing::choose_all(const TileLattice& lattice,
                                                  std::uint32_t count) const {
   std::vector<PixelOrder> orders;
-  for (const SampleOffset place : grid_places(plane.tile(), 1)) {
+  for (const SampleOffset place : grid_places(lattice.tile(), 1)) {
     const PixelSum* sum = find(place);
     const std::uint32_t held = sum != nullptr ? sum->count() : 1;
     if (held < count) orders.push_back({place, held, count});
@@ -94,22 +94,22 @@ std::vector<PixelOrder> Antialiasing::choose_all(const TilePlane& plane,
   return orders;
 }
 
-void Antialiasing::add(TilePlane& plane, const PixelOrder& order, std::span<const Sample> samples,
+void Antialiasing::add(TileLattice& lattice, const PixelOrder& order, std::span<const Sample> samples,
                        std::uint32_t surfaces, const Appearance& appearance) {
   const int x = order.place.x, y = order.place.y;
   auto found = place_of_.find(key_of(order.place));
   const bool is_new = found == place_of_.end();
   if (is_new) {
-    const Sample& first = order.first == 0 ? samples[0] : plane.sample(x, y);
+    const Sample& first = order.first == 0 ? samples[0] : lattice.sample(x, y);
     found = place_of_.emplace(key_of(order.place), sums_.size()).first;
-    sums_.emplace_back(order.place, bend_of(plane, x, y), first, shown(first, appearance));
+    sums_.emplace_back(order.place, bend_of(lattice, x, y), first, shown(first, appearance));
     if (order.first == 0) samples = samples.subspan(1);
   }
   PixelSum& sum = sums_[found->second];
   for (const Sample& sample : samples) sum.add(sample, shown(sample, appearance));
   if (is_new) learn(sum);
-  const bool centre_was_known = plane.with_surfaces() && plane.known(x, y);
-  plane.put(x, y, sum.mean(), centre_was_known ? plane.surfaces_at(x, y) : surfaces);
+  const bool centre_was_known = lattice.with_surfaces() && lattice.known(x, y);
+  lattice.put(x, y, sum.mean(), centre_was_known ? lattice.surfaces_at(x, y) : surfaces);
 }
 
 void Antialiasing::learn(const PixelSum& sum) {
@@ -120,14 +120,14 @@ void Antialiasing::learn(const PixelSum& sum) {
   learned_from_ += 1;
 }
 
-double Antialiasing::squared_error(TilePlane& plane, std::span<const Square> squares) {
+double Antialiasing::squared_error(TileLattice& lattice, std::span<const Square> squares) {
   const double share = squared_share();
   double of_sums = 0;
   for (const PixelSum& sum : sums_) of_sums += sum.squared_error(share);
   double bends = 0;
-  for_pixels(plane, squares, [&](int x, int y) {
+  for_pixels(lattice, squares, [&](int x, int y) {
     if (find({static_cast<std::uint16_t>(x), static_cast<std::uint16_t>(y)}) != nullptr) return;
-    const double bend = bend_of(plane, x, y);
+    const double bend = bend_of(lattice, x, y);
     bends += bend * bend;
   });
   return of_sums + bends * share;

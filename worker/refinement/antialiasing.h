@@ -61,23 +61,23 @@ class Antialiasing {
 
   /// What the pixels of `squares` (of spacing 2), and those with samples of their own, are to get.
   /// Centres that are wanted too are part of the order.
-  std::vector<PixelOrder> choose(TilePlane& plane, std::span<const Square> squares,
+  std::vector<PixelOrder> choose(TileLattice& lattice, std::span<const Square> squares,
                                  const StepPlan& plan, std::uint32_t most);
   /// The samples of one order, in the order of their numbers, and the surfaces of the first.
-  void add(TilePlane& plane, const PixelOrder& order, std::span<const Sample> samples,
+  void add(TileLattice& lattice, const PixelOrder& order, std::span<const Sample> samples,
            std::uint32_t surfaces, const Appearance& appearance);
   /// All pixels get `count` samples.
-  std::vector<PixelOrder> choose_all(const TilePlane& plane, std::uint32_t count) const;
+  std::vector<PixelOrder> choose_all(const TileLattice& lattice, std::uint32_t count) const;
 
   /// The sum over the pixels of `squares` (of spacing 2) with one sample, and those with several.
-  double squared_error(TilePlane& plane, std::span<const Square> squares);
+  double squared_error(TileLattice& lattice, std::span<const Square> squares);
 
   std::span<const PixelSum> sums() const { return sums_; }
   const PixelSum* find(SampleOffset place) const;
   std::size_t bytes() const { return sums_.size() * (sizeof(PixelSum) + 4 * sizeof(void*)); }
 
  private:
-  double bend_of(TilePlane& plane, int x, int y);
+  double bend_of(TileLattice& lattice, int x, int y);
   void learn(const PixelSum& sum);
   /// The squared share of its bend that a centre is off by, as learned so far.
   double squared_share() const { return std::max(0.0, learned_) / learned_from_; }

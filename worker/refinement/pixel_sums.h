@@ -9,7 +9,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "worker/refinement/tile_plane.h"
+#include "worker/refinement/tile_lattice.h"
 
 namespace goldthread {
 

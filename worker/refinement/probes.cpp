@@ -47,7 +47,7 @@ Probes::Probes(ImageSize tile, std::uint32_t seed) : columns_(blocks_along(tile.
     }
 }
 
-std::vector<SampleOffset> Probes::next(const TilePlane& plane, int count) {
+std::vector<SampleOffset> Probes::next(const TileLattice& lattice, int count) {
   std::vector<SampleOffset> places;
   for (Block& block : blocks_) {
     block.looked = 0;
@@ -57,9 +57,9 @@ std::vector<SampleOffset> Probes::next(const TilePlane& plane, int count) {
       // An offset by exclusive or keeps every prefix spread out.
       const SampleOffset inner = place_in_block(block.taken ^ block.offset);
       const int x = block.x + inner.x, y = block.y + inner.y;
-      if (!plane.is_pixel(x, y)) continue;
+      if (!lattice.is_pixel(x, y)) continue;
       ++block.looked;
-      if (!plane.known(x, y))
+      if (!lattice.known(x, y))
         places.push_back({static_cast<std::uint16_t>(x), static_cast<std::uint16_t>(y)});
     }
   }
@@ -72,10 +72,10 @@ void Probes::note(SampleOffset place, double squared, bool surprising) {
   block.mean_squared += squared / looked;
 }
 
-double Probes::squared_error(const TilePlane& plane) const {
+double Probes::squared_error(const TileLattice& lattice) const {
   double sum = 0;
   for (const Block& block : blocks_)
-    sum += block.mean_squared * plane.pixels_of_block(block.x, block.y);
+    sum += block.mean_squared * lattice.pixels_of_block(block.x, block.y);
   return sum;
 }
 

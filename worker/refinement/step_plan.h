@@ -14,8 +14,6 @@
 
 namespace goldthread {
 
-constexpr Step kFirstAdaptiveStep{3};
-
 /// Differences are of displayed colours, in 0 … 1.
 struct StepPlan {
   float threshold = 0;  ///< neighbours that differ by more get a sample between them

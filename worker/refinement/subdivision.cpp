@@ -14,9 +14,9 @@ struct Place {
 /// Chooses in one square after the other.
 class Chooser {
  public:
-  Chooser(TilePlane& plane, int spacing, const SubdivisionRule& rule,
+  Chooser(TileLattice& lattice, int spacing, const SubdivisionRule& rule,
           std::vector<SampleOffset>& wanted)
-      : plane_(plane), spacing_(spacing), half_(spacing / 2), rule_(rule), wanted_(wanted) {}
+      : lattice_(lattice), spacing_(spacing), half_(spacing / 2), rule_(rule), wanted_(wanted) {}
 
   void choose(Square square, bool surprising) {
     const int x = square.x, y = square.y;
@@ -34,15 +34,15 @@ class Chooser {
  private:
   void want(Place at) {
     // The replicated column and row serve what lies between; at the pixels nothing does.
-    if (half_ == 1 && !plane_.is_pixel(at.x, at.y)) return;
-    if (!plane_.mark_wanted(at.x, at.y)) return;
+    if (half_ == 1 && !lattice_.is_pixel(at.x, at.y)) return;
+    if (!lattice_.mark_wanted(at.x, at.y)) return;
     wanted_.push_back({static_cast<std::uint16_t>(at.x), static_cast<std::uint16_t>(at.y)});
   }
 
   bool differ(Place a, Place b) {
-    if (plane_.with_surfaces() && plane_.surfaces_at(a.x, a.y) != plane_.surfaces_at(b.x, b.y))
+    if (lattice_.with_surfaces() && lattice_.surfaces_at(a.x, a.y) != lattice_.surfaces_at(b.x, b.y))
       return true;
-    return distance(plane_.at(a.x, a.y), plane_.at(b.x, b.y)) > rule_.difference;
+    return distance(lattice_.at(a.x, a.y), lattice_.at(b.x, b.y)) > rule_.difference;
   }
 
   bool corners_differ(int x, int y) {
@@ -56,21 +56,21 @@ class Chooser {
   bool edge(Place a, Place step, bool forced) {
     const Place b{a.x + spacing_ * step.x, a.y + spacing_ * step.y};
     const Place middle{a.x + half_ * step.x, a.y + half_ * step.y};
-    if (plane_.wanted(middle.x, middle.y)) return true;
-    if (plane_.known(middle.x, middle.y)) return differ(a, middle) || differ(middle, b);
+    if (lattice_.wanted(middle.x, middle.y)) return true;
+    if (lattice_.known(middle.x, middle.y)) return differ(a, middle) || differ(middle, b);
     if (!forced && !differ(a, b) && !is_bent(a, b, step)) return false;
     want(middle);
     return true;
   }
 
   bool is_bent(Place a, Place b, Place step) {
-    const Shown &p = plane_.at(a.x, a.y), &q = plane_.at(b.x, b.y);
+    const Shown &p = lattice_.at(a.x, a.y), &q = lattice_.at(b.x, b.y);
     const Place before{a.x - spacing_ * step.x, a.y - spacing_ * step.y};
     const Place after{b.x + spacing_ * step.x, b.y + spacing_ * step.y};
-    const bool has_before = plane_.contains(before.x, before.y);
-    const bool has_after = plane_.contains(after.x, after.y);
-    const Shown& o = has_before ? plane_.at(before.x, before.y) : p;
-    const Shown& r = has_after ? plane_.at(after.x, after.y) : q;
+    const bool has_before = lattice_.contains(before.x, before.y);
+    const bool has_after = lattice_.contains(after.x, after.y);
+    const Shown& o = has_before ? lattice_.at(before.x, before.y) : p;
+    const Shown& r = has_after ? lattice_.at(after.x, after.y) : q;
     float most = 0;
     for (std::size_t c = 0; c < 3; ++c) {
       const float way = q.value[c] - p.value[c];
@@ -82,7 +82,7 @@ class Chooser {
     return most > rule_.bend;
   }
 
-  TilePlane& plane_;
+  TileLattice& lattice_;
   int spacing_;
   int half_;
   const SubdivisionRule& rule_;
@@ -96,21 +96,21 @@ bool holds(Square square, int spacing, SampleOffset place) {
 
 }  // namespace
 
-std::vector<Square> squares_of(const TilePlane& plane, int spacing) {
+std::vector<Square> squares_of(const TileLattice& lattice, int spacing) {
   std::vector<Square> squares;
   const int block = 4 * spacing;
-  for (int block_y = 0; block_y < plane.tile().height; block_y += block)
-    for (int block_x = 0; block_x < plane.tile().width; block_x += block)
-      for (int y = block_y; y < std::min(block_y + block, plane.tile().height); y += spacing)
-        for (int x = block_x; x < std::min(block_x + block, plane.tile().width); x += spacing)
+  for (int block_y = 0; block_y < lattice.tile().height; block_y += block)
+    for (int block_x = 0; block_x < lattice.tile().width; block_x += block)
+      for (int y = block_y; y < std::min(block_y + block, lattice.tile().height); y += spacing)
+        for (int x = block_x; x < std::min(block_x + block, lattice.tile().width); x += spacing)
           squares.push_back({static_cast<std::uint16_t>(x), static_cast<std::uint16_t>(y)});
   return squares;
 }
 
-void choose(TilePlane& plane, std::span<const Square> squares, int spacing,
+void choose(TileLattice& lattice, std::span<const Square> squares, int spacing,
             const SubdivisionRule& rule, std::span<const SampleOffset> surprises,
             std::vector<SampleOffset>& wanted) {
-  Chooser chooser(plane, spacing, rule, wanted);
+  Chooser chooser(lattice, spacing, rule, wanted);
   for (const Square square : squares) {
     const bool surprising =
         std::any_of(surprises.begin(), surprises.end(),
@@ -119,18 +119,18 @@ void choose(TilePlane& plane, std::span<const Square> squares, int spacing,
   }
 }
 
-std::vector<Square> quarters(const TilePlane& plane, std::span<const Square> squares,
+std::vector<Square> quarters(const TileLattice& lattice, std::span<const Square> squares,
                              int spacing) {
   const int half = spacing / 2;
   std::vector<Square> result;
   for (const Square square : squares) {
     const int x = square.x, y = square.y;
-    if (!plane.known(x + half, y + half) && !plane.known(x + half, y) && !plane.known(x, y + half) &&
-        !plane.known(x + spacing, y + half) && !plane.known(x + half, y + spacing))
+    if (!lattice.known(x + half, y + half) && !lattice.known(x + half, y) && !lattice.known(x, y + half) &&
+        !lattice.known(x + spacing, y + half) && !lattice.known(x + half, y + spacing))
       continue;
     for (const int dy : {0, half})
       for (const int dx : {0, half})
-        if (plane.is_pixel(x + dx, y + dy))
+        if (lattice.is_pixel(x + dx, y + dy))
           result.push_back({static_cast<std::uint16_t>(x + dx), static_cast<std::uint16_t>(y + dy)});
   }
   return result;

@@ -42,10 +42,10 @@ class TileRefinement {
 
   /// The places that the last step has changed, each once.
   std::span<const SampleOffset> changed() const { return changed_; }
-  const Sample& sample(SampleOffset place) const { return plane_.sample(place.x, place.y); }
-  const TilePlane& plane() const { return plane_; }
+  const Sample& sample(SampleOffset place) const { return lattice_.sample(place.x, place.y); }
+  const TileLattice& lattice() const { return lattice_; }
   /// Roughly what it takes in memory.
-  std::size_t bytes() const { return plane_.bytes() + antialiasing_.bytes(); }
+  std::size_t bytes() const { return lattice_.bytes() + antialiasing_.bytes(); }
 
  private:
   bool cast_places(std::span<const SampleOffset> places, const Cast& cast);
@@ -62,7 +62,7 @@ class TileRefinement {
   double error_of_grid(int spacing);
 
   TileTask task_;
-  TilePlane plane_;
+  TileLattice lattice_;
   Antialiasing antialiasing_;
   Probes probes_;
   std::vector<Square> finest_;  ///< squares of spacing 2 in which something is known

@@ -56,10 +56,10 @@ struct Appearance {
 };
 Shown shown(const Sample& sample, const Appearance& appearance);
 
-class TilePlane {
+class TileLattice {
  public:
   /// The coarsest spacing is 16 pixels: that grid must be known before anything is filled.
-  TilePlane(ImageSize tile, const Appearance& appearance, bool with_surfaces);
+  TileLattice(ImageSize tile, const Appearance& appearance, bool with_surfaces);
 
   ImageSize tile() const { return tile_; }
   std::size_t bytes() const {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "worker/refinement/tile_plane.h"
+#include "worker/refinement/tile_lattice.h"
 
 #include <algorithm>
 #include <bit>
@@ -30,7 +30,7 @@ Shown shown(const Sample& sample, const Appearance& appearance) {
   return result;
 }
 
-TilePlane::TilePlane(ImageSize tile, const Appearance& appearance, bool with_surfaces)
+TileLattice::TileLattice(ImageSize tile, const Appearance& appearance, bool with_surfaces)
     : tile_(tile),
       columns_(places_along(tile.width)),
       rows_(places_along(tile.height)),
@@ -42,7 +42,7 @@ TilePlane::TilePlane(ImageSize tile, const Appearance& appearance, bool with_sur
   if (with_surfaces) surfaces_.resize(places);
 }
 
-void TilePlane::put(int x, int y, const Sample& sample, std::uint32_t surfaces) {
+void TileLattice::put(int x, int y, const Sample& sample, std::uint32_t surfaces) {
   const std::size_t i = index(x, y);
   samples_[i] = sample;
   shown_[i] = shown(sample, appearance_);
@@ -50,11 +50,11 @@ void TilePlane::put(int x, int y, const Sample& sample, std::uint32_t surfaces) 
   if (with_surfaces()) surfaces_[i] = surfaces;
 }
 
-int TilePlane::pixels_of_block(int x, int y) const {
+int TileLattice::pixels_of_block(int x, int y) const {
   return std::min(kCoarsestSpacing, tile_.width - x) * std::min(kCoarsestSpacing, tile_.height - y);
 }
 
-Shown TilePlane::filled_at(int x, int y) {
+Shown TileLattice::filled_at(int x, int y) {
   const int s = spacing_of(x, y);
   const bool across = (x & s) != 0, down = (y & s) != 0;
   if (across && down) {
@@ -64,7 +64,7 @@ Shown TilePlane::filled_at(int x, int y) {
   return midpoint(at(x, y - s), at(x, y + s));
 }
 
-std::uint32_t TilePlane::surfaces_at(int x, int y) {
+std::uint32_t TileLattice::surfaces_at(int x, int y) {
   while (!known(x, y)) {
     const int s = spacing_of(x, y);
     if ((x & s) != 0) x -= s;
@@ -73,7 +73,7 @@ std::uint32_t TilePlane::surfaces_at(int x, int y) {
   return surfaces_[index(x, y)];
 }
 
-void TilePlane::forget_filled() {
+void TileLattice::forget_filled() {
   if (++current_ < kWanted) return;
   std::replace_if(
       state_.begin(), state_.end(), [](std::uint8_t state) { return state != kKnown; },
