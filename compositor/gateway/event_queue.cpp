@@ -6,8 +6,8 @@
 namespace goldthread {
 namespace {
 
-// A camera or a size replaces an older one whichever page it is from: only the newest counts, and
-// pages that come and go cannot fill the queue.
+// A camera, a size or display settings replace older ones whichever page they are from: only the
+// newest count, and pages that come and go cannot fill the queue.
 bool overtakes(const GatewayEvent& newer, const GatewayEvent& older) {
   return newer.index() == older.index() && !std::holds_alternative<EditInput>(newer);
 }

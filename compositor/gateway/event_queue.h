@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 // What pages asked for and nobody has taken yet, in order. Bounded whatever the pages send and
-// however late the events are taken: states (camera, size, audience) replace each other, edits
-// count against a limit.
+// however late the events are taken: states (camera, size, display, audience) replace each other,
+// edits count against a limit.
 
 #include <cstddef>
 #include <vector>

@@ -17,6 +17,7 @@
 
 #include "common/base/types.h"
 #include "common/scene/scene.h"
+#include "common/tile/refinement.h"
 
 namespace goldthread {
 
@@ -49,8 +50,10 @@ struct Picture {
   std::uint32_t viewer = 0;  ///< whose input is the newest in it
   std::uint32_t serial = 0;  ///< of that input
   ImageSize size;
-  std::uint8_t spacing_px = 1;
   bool final = false;
+  std::uint8_t cine_frame = 0;   ///< 1 … cine_frames: a frame of the cine loop; 0: none
+  std::uint8_t cine_frames = 0;  ///< 7, or 0: no cine loop
+  float estimated_error = -1;    ///< RMS in 1/255; negative: unknown
   std::vector<PictureRegion> regions;
 };
 
@@ -67,12 +70,16 @@ struct SizeInput {
   std::uint32_t viewer = 0, serial = 0;
   ImageSize size;
 };
+struct DisplayInput {
+  std::uint32_t viewer = 0, serial = 0;
+  DisplaySettings display;
+};
 /// How many pages are connected, and whether one of them can take a picture now.
 struct AudienceChange {
   std::uint32_t viewers = 0;
   bool ready = false;
 };
-using GatewayEvent = std::variant<CameraInput, EditInput, SizeInput, AudienceChange>;
+using GatewayEvent = std::variant<CameraInput, EditInput, SizeInput, DisplayInput, AudienceChange>;
 
 class Gateway {
  public:
@@ -89,7 +96,9 @@ class Gateway {
   // Malformed arguments are bugs of the caller and throw std::invalid_argument.
 
   /// The newest picture: each page gets it as soon as it has room, unless a newer one comes first.
-  /// Pages that arrive later start with it. 1 … 255 regions inside the image, encodings 1 or 2.
+  /// Pages that arrive later start with it. Frames of a cine loop do not overtake each other, but
+  /// for a newer one of the same place: each page gets the whole loop. 1 … 255 regions inside the
+  /// image, encodings 1 or 2, an estimated error that is a number.
   void publish(Picture picture);
   /// JSON for all pages. `welcome_json` (without viewer, driver, viewers) describes the session as
   /// it is at the call; it is kept for later pages and turns waiting ones into spectators.
@@ -100,9 +109,9 @@ class Gateway {
   /// JSON for one page; dropped if that page has gone.
   void send(std::uint32_t viewer, std::string json);
 
-  /// What has come since the last call, in order; cameras, sizes and audience changes that a newer
-  /// one of their kind overtook are left out. An audience change is the state at its place in the
-  /// order: states between two calls may be skipped, the newest never is.
+  /// What has come since the last call, in order; cameras, sizes, display settings and audience
+  /// changes that a newer one of their kind overtook are left out. An audience change is the state
+  /// at its place in the order: states between two calls may be skipped, the newest never is.
   std::vector<GatewayEvent> take_events();
 
  private:

@@ -72,6 +72,20 @@ Result<std::uint32_t> count(const Json& object, const char* key) {
   return static_cast<std::uint32_t>(*value);
 }
 
+Result<std::string> text(const Json& object, const char* key) {
+  const auto found = object.find(key);
+  if (found == object.end() || !found->is_string()) return malformed(key, "is not a string");
+  return found->get<std::string>();
+}
+
+Result<bool> boolean(const Json& object, const char* key) {
+  const auto found = object.find(key);
+  if (found == object.end() || !found->is_boolean()) {
+    return malformed(key, "is neither true nor false");
+  }
+  return found->get<bool>();
+}
+
 Result<glm::dvec3> vector3(const Json& object, const char* key) {
   const auto found = object.find(key);
   if (found == object.end() || !found->is_array() || found->size() != 3) {
@@ -135,6 +149,18 @@ Result<Message> decode_size(const Json& object) {
   return Message{Resize{*serial, *width, *height}};
 }
 
+Result<Message> decode_display(const Json& object) {
+  const Result<std::uint32_t> serial = count(object, "serial");
+  if (!serial) return serial.failure();
+  const Result<std::string> filter = text(object, "filter");
+  if (!filter) return filter.failure();
+  const Result<std::string> update = text(object, "update");
+  if (!update) return update.failure();
+  const Result<bool> cine = boolean(object, "cine");
+  if (!cine) return cine.failure();
+  return Message{Display{*serial, *filter, *update, *cine}};
+}
+
 Result<Message> decode_drive(const Json&) { return Message{Drive{}}; }
 
 Result<Message> decode_ack(const Json& object) {
@@ -153,10 +179,33 @@ struct Decoder {
   std::string_view type;
   Result<Message> (*decode)(const Json&);
 };
-constexpr Decoder kDecoders[] = {{"hello", decode_hello}, {"camera", decode_camera},
-                                 {"edit", decode_edit},   {"size", decode_size},
-                                 {"drive", decode_drive}, {"ack", decode_ack},
-                                 {"ping", decode_ping}};
+constexpr Decoder kDecoders[] = {{"hello", decode_hello},     {"camera", decode_camera},
+                                 {"edit", decode_edit},       {"size", decode_size},
+                                 {"display", decode_display}, {"drive", decode_drive},
+                                 {"ack", decode_ack},         {"ping", decode_ping}};
+
+template <class T>
+struct Named {
+  std::string_view name;
+  T value;
+};
+constexpr Named<Filter> kFilters[] = {{"box", Filter::kBox},
+                                      {"bilinear", Filter::kBilinear},
+                                      {"biquadratic", Filter::kBiquadratic},
+                                      {"piecewise-quadratic", Filter::kPiecewiseQuadratic},
+                                      {"bicubic", Filter::kBicubic}};
+constexpr Named<Update> kUpdates[] = {{"100", Update::kAll},
+                                      {"50", Update::kHalf},
+                                      {"25", Update::kQuarter},
+                                      {"frameless", Update::kFrameless}};
+
+template <class T, std::size_t N>
+std::optional<T> value_of(const Named<T> (&table)[N], std::string_view name) {
+  for (const Named<T>& entry : table) {
+    if (entry.name == name) return entry.value;
+  }
+  return std::nullopt;
+}
 
 bool reachable(const glm::dvec3& point) {
   const auto near = [](double c) { return std::abs(c) <= kMaxCoordinate_mm; };
@@ -204,6 +253,19 @@ std::optional<Failure> refusal(const Resize& resize) {
   const auto good = [](std::int64_t side) { return side >= kMinSide_px && side <= kMaxSide_px; };
   if (good(resize.width) && good(resize.height)) return std::nullopt;
   return Failure{"size", "is out of range", "choose 16 to 4096 pixels for each side"};
+}
+
+Result<DisplaySettings> settings_of(const Display& display) {
+  const std::optional<Filter> filter = value_of(kFilters, display.filter);
+  if (!filter) {
+    return Failure{"display.filter", "is unknown",
+                   "choose box, bilinear, biquadratic, piecewise-quadratic or bicubic"};
+  }
+  const std::optional<Update> update = value_of(kUpdates, display.update);
+  if (!update) {
+    return Failure{"display.update", "is unknown", "choose 100, 50, 25 or frameless"};
+  }
+  return DisplaySettings{*filter, *update, display.cine};
 }
 
 }  // namespace goldthread::page

@@ -14,10 +14,11 @@
 #include "common/base/result.h"
 #include "common/base/types.h"
 #include "common/scene/scene.h"
+#include "common/tile/refinement.h"
 
 namespace goldthread::page {
 
-inline constexpr std::uint32_t kProtocol = 1;
+inline constexpr std::uint32_t kProtocol = 2;
 inline constexpr std::size_t kMaxMessageBytes = std::size_t{1} << 20;
 inline constexpr int kMaxNesting = 16;
 inline constexpr std::int64_t kMinSide_px = 16;
@@ -38,6 +39,11 @@ struct Resize {
   std::uint32_t serial = 0;
   std::int64_t width = 0, height = 0;
 };
+struct Display {
+  std::uint32_t serial = 0;
+  std::string filter, update;  ///< names of the protocol, or anything else
+  bool cine = false;
+};
 struct Drive {};
 struct Ack {
   std::uint32_t picture = 0;
@@ -45,7 +51,7 @@ struct Ack {
 struct Ping {
   double time = 0;
 };
-using Message = std::variant<Hello, MoveCamera, Edit, Resize, Drive, Ack, Ping>;
+using Message = std::variant<Hello, MoveCamera, Edit, Resize, Display, Drive, Ack, Ping>;
 
 /// The message in `text`, or what is wrong with its form. Reasons never repeat the page's text.
 Result<Message> decode(std::string_view text);
@@ -54,5 +60,7 @@ Result<Message> decode(std::string_view text);
 std::optional<Failure> refusal(const Camera& camera);
 /// Why an image cannot have this size, if so.
 std::optional<Failure> refusal(const Resize& resize);
+/// The settings that a page named, or why there are none of these names.
+Result<DisplaySettings> settings_of(const Display& display);
 
 }  // namespace goldthread::page

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "compositor/gateway/region_codec.h"
 
+#include <bit>
+#include <cmath>
 #include <stdexcept>
 
 namespace goldthread {
@@ -8,6 +10,8 @@ namespace {
 
 constexpr std::uint32_t kMagic = 0x47525447;
 constexpr std::int32_t kMaxSide = 65535;
+constexpr std::uint8_t kLoopFrames = 7;
+constexpr std::uint8_t kZero = 0;
 
 class Writer {
  public:
@@ -49,6 +53,22 @@ bool inside(const PixelRect& rect, const ImageSize& size) {
          rect.x <= size.width - rect.width && rect.y <= size.height - rect.height;
 }
 
+/// Whether a picture can have this place in a loop, or none.
+bool cine_place(std::uint8_t frame, std::uint8_t frames) {
+  return frames == 0 ? frame == 0 : frames == kLoopFrames && frame >= 1 && frame <= frames;
+}
+
+/// Why a header whose bytes are read cannot be, or nullptr.
+const char* contradiction(const RegionHeader& header) {
+  if (header.encoding != 1 && header.encoding != 2) return "the encoding is unknown";
+  if (header.index >= header.count) return "the index is not below the count";
+  if (!cine_place(header.cine_frame, header.cine_frames)) return "the cine frame is not in a loop";
+  if (std::isnan(header.estimated_error)) return "the estimated error is not a number";
+  const bool in_image = inside({header.x, header.y, header.width, header.height},
+                               {header.image_width, header.image_height});
+  return in_image ? nullptr : "the region is not inside the image";
+}
+
 }  // namespace
 
 RegionHeaderBytes encode(const RegionHeader& header) {
@@ -68,13 +88,17 @@ RegionHeaderBytes encode(const RegionHeader& header) {
   out.put(header.encoding);
   out.put(header.index);
   out.put(header.count);
-  out.put(header.spacing_px);
+  out.put(kZero);
   out.put(static_cast<std::uint8_t>(header.final ? 1 : 0));
+  out.put(header.cine_frame);
+  out.put(header.cine_frames);
+  out.put(kZero);
+  out.put(std::bit_cast<std::uint32_t>(header.estimated_error));
   return bytes;
 }
 
 Result<RegionHeader> decode_region_header(std::span<const std::byte> message) {
-  if (message.size() < kRegionHeaderBytes) return bad("is shorter than 40 bytes");
+  if (message.size() < kRegionHeaderBytes) return bad("is shorter than 44 bytes");
   Reader in(message);
   if (in.get<std::uint32_t>() != kMagic) return bad("does not start with the magic number");
   RegionHeader header;
@@ -91,19 +115,16 @@ Result<RegionHeader> decode_region_header(std::span<const std::byte> message) {
   header.encoding = in.get<std::uint8_t>();
   header.index = in.get<std::uint8_t>();
   header.count = in.get<std::uint8_t>();
-  header.spacing_px = in.get<std::uint8_t>();
+  const auto before_final = in.get<std::uint8_t>();
   const auto final = in.get<std::uint8_t>();
   if (final > 1) return bad("`final` is neither 0 nor 1");
   header.final = final == 1;
-  for (int i = 0; i < 3; ++i) {
-    if (in.get<std::uint8_t>() != 0) return bad("the last three bytes are not zero");
-  }
-  if (header.encoding != 1 && header.encoding != 2) return bad("the encoding is unknown");
-  if (header.index >= header.count) return bad("the index is not below the count");
-  if (!inside({header.x, header.y, header.width, header.height},
-              {header.image_width, header.image_height})) {
-    return bad("the region is not inside the image");
-  }
+  header.cine_frame = in.get<std::uint8_t>();
+  header.cine_frames = in.get<std::uint8_t>();
+  const auto before_error = in.get<std::uint8_t>();
+  if (before_final != kZero || before_error != kZero) return bad("a reserved byte is not zero");
+  header.estimated_error = std::bit_cast<float>(in.get<std::uint32_t>());
+  if (const char* what = contradiction(header)) return bad(what);
   return header;
 }
 
@@ -123,8 +144,10 @@ RegionHeader region_header(const Picture& picture, std::size_t region, std::uint
           .encoding = part.encoding,
           .index = static_cast<std::uint8_t>(region),
           .count = static_cast<std::uint8_t>(picture.regions.size()),
-          .spacing_px = picture.spacing_px,
-          .final = picture.final};
+          .final = picture.final,
+          .cine_frame = picture.cine_frame,
+          .cine_frames = picture.cine_frames,
+          .estimated_error = picture.estimated_error};
 }
 
 void check_picture(const Picture& picture) {
@@ -133,6 +156,12 @@ void check_picture(const Picture& picture) {
   }
   if (picture.size.width > kMaxSide || picture.size.height > kMaxSide) {
     throw std::invalid_argument("a picture has at most 65535 pixels a side");
+  }
+  if (!cine_place(picture.cine_frame, picture.cine_frames)) {
+    throw std::invalid_argument("a picture is one of 7 cine frames, or none");
+  }
+  if (std::isnan(picture.estimated_error)) {
+    throw std::invalid_argument("a picture's estimated error is a number");
   }
   for (const PictureRegion& region : picture.regions) {
     if (!inside(region.rect, picture.size)) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// The 40 bytes in front of each region of a picture (docs/viewer-protocol.md, "Regions"). Little
+// The 44 bytes in front of each region of a picture (docs/viewer-protocol.md, "Regions"). Little
 // endian on every machine; decode accepts exactly what encode can produce.
 
 #include <array>
@@ -13,7 +13,7 @@
 
 namespace goldthread {
 
-inline constexpr std::size_t kRegionHeaderBytes = 40;
+inline constexpr std::size_t kRegionHeaderBytes = 44;
 inline constexpr std::size_t kMaxRegions = 255;
 
 struct RegionHeader {
@@ -26,8 +26,10 @@ struct RegionHeader {
   std::uint8_t encoding = 0;  ///< 1 JPEG, 2 zstd RGB
   std::uint8_t index = 0;
   std::uint8_t count = 0;
-  std::uint8_t spacing_px = 0;
   bool final = false;
+  std::uint8_t cine_frame = 0;
+  std::uint8_t cine_frames = 0;
+  float estimated_error = -1;  ///< RMS in 1/255; negative: unknown
   bool operator==(const RegionHeader&) const = default;
 };
 
@@ -42,7 +44,8 @@ Result<RegionHeader> decode_region_header(std::span<const std::byte> message);
 RegionHeader region_header(const Picture& picture, std::size_t region, std::uint32_t number);
 
 /// Throws std::invalid_argument, a bug of the caller, unless the picture can be sent: 1 … 255
-/// regions inside an image of at most 65535 pixels a side, encodings 1 or 2.
+/// regions inside an image of at most 65535 pixels a side, encodings 1 or 2, a possible place in a
+/// cine loop, an error that is a number.
 void check_picture(const Picture& picture);
 
 }  // namespace goldthread

@@ -30,6 +30,18 @@ std::shared_ptr<const NumberedPicture> numbered(Picture picture, std::uint32_t n
   return result;
 }
 
+/// Are these two places of one cine loop?
+bool side_by_side(const Picture& a, const Picture& b) {
+  return a.cine_frame > 0 && b.cine_frame > 0 && a.cine_frame != b.cine_frame && a.size == b.size;
+}
+
+// A loop that lacks a frame is none, so that its frames are not overtaken by each other.
+void add_newest(Pictures& pictures, const std::shared_ptr<const NumberedPicture>& newest) {
+  std::erase_if(pictures,
+                [&](const auto& older) { return !side_by_side(older->picture, newest->picture); });
+  pictures.push_back(newest);
+}
+
 }  // namespace
 
 Viewer Session::open() {
@@ -71,7 +83,7 @@ AudienceChange Session::audience() const {
   const bool ready = std::any_of(pages_.begin(), pages_.end(), [](const auto& entry) {
     const Page& page = entry.second;
     return page.stage == Stage::kWatching && page.unacknowledged.size() < kMaxUnacknowledged &&
-           !page.waiting;
+           page.waiting.empty();
   });
   return {present_count(), ready};
 }
@@ -153,9 +165,10 @@ void Session::send(Viewer viewer, std::string json) {
 
 void Session::publish(Picture picture) {
   check_picture(picture);
-  newest_ = numbered(std::move(picture), ++last_picture_);
+  const auto newest = numbered(std::move(picture), ++last_picture_);
+  add_newest(newest_, newest);
   for (auto& [viewer, page] : pages_) {
-    if (page.stage == Stage::kWatching) page.waiting = newest_;
+    if (page.stage == Stage::kWatching) add_newest(page.waiting, newest);
   }
 }
 
@@ -197,8 +210,9 @@ std::optional<Frame> Session::next_frame(Viewer viewer) {
 }
 
 std::optional<Frame> Session::next_region(Page& page) {
-  if (!page.sending && page.waiting && page.unacknowledged.size() < kMaxUnacknowledged) {
-    page.sending = std::exchange(page.waiting, nullptr);
+  if (!page.sending && !page.waiting.empty() && page.unacknowledged.size() < kMaxUnacknowledged) {
+    page.sending = std::move(page.waiting.front());
+    page.waiting.pop_front();
     page.next_region = 0;
     page.last_begun = page.sending->number;
     page.unacknowledged.push_back(page.last_begun);

@@ -3,7 +3,8 @@
 // The rules of a session, without sockets and clocks: who is connected, who drives, what each page
 // is told next. Frames are pulled, one at a time, by whoever writes them, so that what waits for a
 // slow page lies here and is bounded: one message per type of state, a limited number of answers,
-// one picture. A picture that was begun is finished before another starts.
+// one picture or the frames of one cine loop. A picture that was begun is finished before another
+// starts.
 
 #include <array>
 #include <cstdint>
@@ -32,6 +33,10 @@ struct NumberedPicture {
   Picture picture;
   std::vector<RegionHeaderBytes> headers;
 };
+
+/// What a page that has shown nothing yet is to show: the newest picture, or the newest of each
+/// frame of a cine loop. Oldest first.
+using Pictures = std::deque<std::shared_ptr<const NumberedPicture>>;
 
 struct TextFrame {
   std::shared_ptr<const std::string> text;
@@ -97,7 +102,7 @@ class Session {
     std::deque<std::uint32_t> unacknowledged;        ///< pictures begun, oldest first
     std::shared_ptr<const NumberedPicture> sending;  ///< begun, not all regions pulled
     std::size_t next_region = 0;
-    std::shared_ptr<const NumberedPicture> waiting;  ///< the newest that has no room yet
+    Pictures waiting;  ///< the newest that have no room yet
     std::uint32_t last_begun = 0;
     std::optional<CloseFrame> close;
   };
@@ -116,6 +121,7 @@ class Session {
   void handle(Viewer viewer, Page& page, const page::MoveCamera& move);
   void handle(Viewer viewer, Page& page, const page::Edit& edit);
   void handle(Viewer viewer, Page& page, const page::Resize& resize);
+  void handle(Viewer viewer, Page& page, const page::Display& display);
   void handle(Viewer viewer, Page& page, const page::Drive& drive);
   void handle(Viewer viewer, Page& page, const page::Ack& ack);
   void handle(Viewer viewer, Page& page, const page::Ping& ping);
@@ -134,7 +140,7 @@ class Session {
   Viewer driver_ = 0;
   std::string welcome_;             ///< an object's text without its opening brace; empty: none yet
   std::vector<Retained> retained_;  ///< the newest state of each type since the welcome was set
-  std::shared_ptr<const NumberedPicture> newest_;
+  Pictures newest_;
   std::uint32_t last_picture_ = 0;
   std::vector<GatewayEvent> events_;
   AudienceChange reported_;

@@ -87,6 +87,16 @@ void Session::handle(Viewer viewer, Page& page, const page::Resize& resize) {
       {static_cast<std::int32_t>(resize.width), static_cast<std::int32_t>(resize.height)}});
 }
 
+void Session::handle(Viewer viewer, Page& page, const page::Display& display) {
+  if (!accepts_input(viewer, page, display.serial)) return;
+  const Result<DisplaySettings> settings = page::settings_of(display);
+  if (!settings) {
+    refuse(viewer, page, display.serial, settings.failure());
+    return;
+  }
+  events_.push_back(DisplayInput{viewer, display.serial, *settings});
+}
+
 void Session::handle(Viewer viewer, Page&, const page::Drive&) {
   if (driver_ == viewer) return;
   driver_ = viewer;

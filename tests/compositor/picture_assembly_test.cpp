@@ -13,13 +13,25 @@ constexpr ImageSize kImage{10, 30};
 
 EncodedBand band(std::uint32_t picture, int index, ImageSize image = kImage) {
   EncodedBand result;
-  result.present = {{picture + 100}, picture, 7, picture + 1000, false, picture % 2 == 0};
+  Present& present = result.present;
+  present.epoch = {picture + 100};
+  present.picture = picture;
+  present.viewer = 7;
+  present.serial = picture + 1000;
+  present.final = picture % 2 == 0;
+  present.estimated_error = static_cast<float>(picture);
   result.image = image;
   result.rect = {0, 10 * index, 10, 10};
   result.encoding = 1;
-  result.spacing_px = static_cast<std::uint8_t>(1 << index);
   result.payload = Buffer(1);
   result.payload.data()[0] = static_cast<std::byte>(index);
+  return result;
+}
+
+EncodedBand cine_band(std::uint32_t picture, std::uint8_t frame, int index) {
+  EncodedBand result = band(picture, index);
+  result.present.cine_frame = frame;
+  result.present.cine_frames = 7;
   return result;
 }
 
@@ -37,7 +49,8 @@ TEST(PictureAssembly, TakesItsBandsInAnyOrder) {
     EXPECT_EQ(whole->serial, picture + 1000);
     EXPECT_EQ(whole->size, kImage);
     EXPECT_EQ(whole->final, picture % 2 == 0);
-    EXPECT_EQ(whole->spacing_px, 4) << "the coarsest band's";
+    EXPECT_EQ(whole->estimated_error, static_cast<float>(picture));
+    EXPECT_EQ(whole->cine_frames, 0);
     ASSERT_EQ(whole->regions.size(), 3u);
     for (std::size_t i = 0; i < 3; ++i) {
       EXPECT_EQ(whole->regions[i].rect.y, 10 * order[i]);
@@ -88,6 +101,43 @@ TEST(PictureAssembly, KnowsItsSizeFromItsBandsAlsoWhenTheViewHasChangedSize) {
   EXPECT_TRUE(assembly.add(band(1, 2)));
   EXPECT_FALSE(assembly.add(band(2, 0, {10, 20})));
   EXPECT_TRUE(assembly.add(band(2, 1, {10, 20})));
+}
+
+TEST(PictureAssembly, PutsFramesOfACineLoopTogetherNextToEachOther) {
+  // Each compositor hurries on to the next frame: none may be lost by that.
+  PictureAssembly assembly;
+  const auto number = [](std::uint8_t frame) { return 10u + frame; };
+  for (std::uint8_t frame = 7; frame >= 1; --frame) {
+    for (const int i : {0, 1}) EXPECT_FALSE(assembly.add(cine_band(number(frame), frame, i)));
+  }
+  for (std::uint8_t frame = 1; frame <= 7; ++frame) {
+    const auto whole = assembly.add(cine_band(number(frame), frame, 2));
+    ASSERT_TRUE(whole) << int{frame};
+    EXPECT_EQ(whole->cine_frame, frame);
+    EXPECT_EQ(whole->cine_frames, 7);
+    EXPECT_EQ(whole->epoch, Epoch{number(frame) + 100});
+    EXPECT_FALSE(assembly.add(cine_band(number(frame), frame, 2))) << "once";
+  }
+}
+
+TEST(PictureAssembly, ForgetsCineFramesThatAreALoopBehind) {
+  PictureAssembly assembly;
+  for (const int i : {0, 1}) EXPECT_FALSE(assembly.add(cine_band(1, 1, i)));
+  EXPECT_FALSE(assembly.add(cine_band(8, 1, 0))) << "the same frame, a loop later";
+  EXPECT_FALSE(assembly.add(cine_band(1, 1, 2)));
+  EXPECT_FALSE(assembly.add(cine_band(8, 1, 1)));
+  EXPECT_TRUE(assembly.add(cine_band(8, 1, 2)));
+}
+
+TEST(PictureAssembly, DoesNotMixACineLoopWithOtherPictures) {
+  PictureAssembly assembly;
+  EXPECT_FALSE(assembly.add(band(1, 0)));
+  EXPECT_FALSE(assembly.add(cine_band(2, 1, 0)));
+  EXPECT_FALSE(assembly.add(band(1, 1))) << "overtaken by the loop";
+  EXPECT_FALSE(assembly.add(band(3, 0)));
+  EXPECT_FALSE(assembly.add(cine_band(2, 1, 1))) << "overtaken by a picture";
+  EXPECT_FALSE(assembly.add(band(3, 1)));
+  EXPECT_TRUE(assembly.add(band(3, 2)));
 }
 
 }  // namespace

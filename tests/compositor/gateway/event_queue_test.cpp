@@ -11,15 +11,18 @@ TEST(EventQueue, ANewerCameraOvertakesAnOlderOneAndEditsKeepTheirPlace) {
   EXPECT_TRUE(queue.push(CameraInput{1, 1, {}}));
   EXPECT_TRUE(queue.push(EditInput{1, 2, "{}"}));
   EXPECT_TRUE(queue.push(SizeInput{1, 3, {64, 64}}));
-  EXPECT_TRUE(queue.push(CameraInput{1, 4, {}}));
-  EXPECT_TRUE(queue.push(EditInput{1, 5, "{}"}));
-  EXPECT_TRUE(queue.push(SizeInput{1, 6, {32, 32}}));
+  EXPECT_TRUE(queue.push(DisplayInput{1, 4, {}}));
+  EXPECT_TRUE(queue.push(CameraInput{1, 5, {}}));
+  EXPECT_TRUE(queue.push(EditInput{1, 6, "{}"}));
+  EXPECT_TRUE(queue.push(SizeInput{1, 7, {32, 32}}));
+  EXPECT_TRUE(queue.push(DisplayInput{1, 8, {}}));
   const auto events = queue.take();
-  ASSERT_EQ(events.size(), 4U);
+  ASSERT_EQ(events.size(), 5U);
   EXPECT_EQ(std::get<EditInput>(events[0]).serial, 2U);
-  EXPECT_EQ(std::get<CameraInput>(events[1]).serial, 4U);
-  EXPECT_EQ(std::get<EditInput>(events[2]).serial, 5U);
-  EXPECT_EQ(std::get<SizeInput>(events[3]).serial, 6U);
+  EXPECT_EQ(std::get<CameraInput>(events[1]).serial, 5U);
+  EXPECT_EQ(std::get<EditInput>(events[2]).serial, 6U);
+  EXPECT_EQ(std::get<SizeInput>(events[3]).serial, 7U);
+  EXPECT_EQ(std::get<DisplayInput>(events[4]).serial, 8U);
   EXPECT_TRUE(queue.take().empty());
 }
 
@@ -28,11 +31,12 @@ TEST(EventQueue, StaysSmallWhateverStatesArePushed) {
   for (std::uint32_t i = 1; i <= 10000; ++i) {
     EXPECT_TRUE(queue.push(CameraInput{i, i, {}}));
     EXPECT_TRUE(queue.push(SizeInput{i, i, {}}));
+    EXPECT_TRUE(queue.push(DisplayInput{i, i, {}}));
     EXPECT_TRUE(queue.push(AudienceChange{i, true}));
   }
   const auto events = queue.take();
-  ASSERT_EQ(events.size(), 3U);
-  EXPECT_EQ(std::get<AudienceChange>(events[2]).viewers, 10000U);
+  ASSERT_EQ(events.size(), 4U);
+  EXPECT_EQ(std::get<AudienceChange>(events[3]).viewers, 10000U);
 }
 
 TEST(EventQueue, EditsAreLimitedInNumberUntilTaken) {

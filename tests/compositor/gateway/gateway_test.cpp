@@ -18,7 +18,7 @@ using namespace testing_client;
 using Json = nlohmann::json;
 
 constexpr const char* kSession = "/session?token=secret";
-const Json kHello{{"type", "hello"}, {"protocol", 1}};
+const Json kHello{{"type", "hello"}, {"protocol", 2}};
 
 GatewayOptions options() {
   GatewayOptions options;
@@ -33,7 +33,7 @@ Picture picture_of(std::size_t regions, std::size_t bytes = 100) {
   picture.viewer = 1;
   picture.serial = 3;
   picture.size = {320, 200};
-  picture.spacing_px = 4;
+  picture.estimated_error = 0.5F;
   for (std::size_t i = 0; i < regions; ++i) {
     const auto row = static_cast<std::int32_t>(i);
     picture.regions.push_back(
@@ -57,7 +57,7 @@ class GatewayTest : public testing::Test {
     page.send(kHello);
     return page;
   }
-  void set_welcome() { gateway_.set_welcome(R"({"type":"welcome","protocol":1})"); }
+  void set_welcome() { gateway_.set_welcome(R"({"type":"welcome","protocol":2})"); }
 
   Gateway gateway_{options()};
 };
@@ -175,7 +175,7 @@ TEST_F(GatewayTest, LoadingComesBeforeTheWelcome) {
   set_welcome();
   EXPECT_EQ(
       page.receive().json,
-      (Json{{"type", "welcome"}, {"protocol", 1}, {"viewer", 1}, {"driver", 1}, {"viewers", 1}}));
+      (Json{{"type", "welcome"}, {"protocol", 2}, {"viewer", 1}, {"driver", 1}, {"viewers", 1}}));
 }
 
 TEST_F(GatewayTest, TwoPagesShareASessionAndHandItOn) {
@@ -209,14 +209,19 @@ TEST_F(GatewayTest, TwoPagesShareASessionAndHandItOn) {
   EXPECT_EQ(left.at("viewers"), 1);
 }
 
-TEST_F(GatewayTest, EditsAndSizesComeThroughInOrder) {
+TEST_F(GatewayTest, EditsSizesAndDisplaySettingsComeThroughInOrder) {
   set_welcome();
   Page page = enter();
   page.send({{"type", "edit"}, {"serial", 1}, {"edit", {{"step", 0.5}}}});
   page.send({{"type", "size"}, {"serial", 2}, {"width", 640}, {"height", 480}});
-  page.send({{"type", "edit"}, {"serial", 3}, {"edit", {{"lights", Json::array()}}}});
+  page.send({{"type", "display"},
+             {"serial", 3},
+             {"filter", "box"},
+             {"update", "frameless"},
+             {"cine", false}});
+  page.send({{"type", "edit"}, {"serial", 4}, {"edit", {{"lights", Json::array()}}}});
   const auto events = events_until(
-      gateway_, some<EditInput>([](const EditInput& input) { return input.serial == 3; }));
+      gateway_, some<EditInput>([](const EditInput& input) { return input.serial == 4; }));
   std::vector<std::uint32_t> serials;
   for (const GatewayEvent& event : events) {
     if (const auto* edit = std::get_if<EditInput>(&event)) serials.push_back(edit->serial);
@@ -224,8 +229,12 @@ TEST_F(GatewayTest, EditsAndSizesComeThroughInOrder) {
       serials.push_back(size->serial);
       EXPECT_EQ(size->size, (ImageSize{640, 480}));
     }
+    if (const auto* display = std::get_if<DisplayInput>(&event)) {
+      serials.push_back(display->serial);
+      EXPECT_EQ(display->display, (DisplaySettings{Filter::kBox, Update::kFrameless, false}));
+    }
   }
-  EXPECT_EQ(serials, (std::vector<std::uint32_t>{1, 2, 3}));
+  EXPECT_EQ(serials, (std::vector<std::uint32_t>{1, 2, 3, 4}));
 }
 
 TEST_F(GatewayTest, RegionsArriveToTheByte) {

@@ -23,7 +23,7 @@ using Json = nlohmann::json;
 using tcp = boost::asio::ip::tcp;
 
 constexpr const char* kSession = "/session?token=secret";
-const Json kHello{{"type", "hello"}, {"protocol", 1}};
+const Json kHello{{"type", "hello"}, {"protocol", 2}};
 constexpr std::uint16_t kPolicy = 1008;
 
 GatewayOptions options(GatewayLimits limits = {}) {
@@ -37,11 +37,11 @@ GatewayOptions options(GatewayLimits limits = {}) {
 class HostileTest : public testing::Test {
  protected:
   explicit HostileTest(GatewayLimits limits = {}) : gateway_(options(limits)) {
-    gateway_.set_welcome(R"({"type":"welcome","protocol":1})");
+    gateway_.set_welcome(R"({"type":"welcome","protocol":2})");
   }
   void TearDown() override {
     Page good = enter();
-    EXPECT_EQ(good.expect("welcome").at("protocol"), 1);
+    EXPECT_EQ(good.expect("welcome").at("protocol"), 2);
     good.send({{"type", "ping"}, {"time", 42}});
     EXPECT_EQ(good.expect("pong").at("time"), 42);
   }

@@ -26,7 +26,7 @@ T decoded(const std::string& text) {
 }
 
 TEST(PageMessage, EachMessageOfTheProtocolIsDecoded) {
-  EXPECT_EQ(decoded<Hello>(R"({"type":"hello","protocol":1})").protocol, 1);
+  EXPECT_EQ(decoded<Hello>(R"({"type":"hello","protocol":2})").protocol, 2);
   const auto move = decoded<MoveCamera>(R"({"type":"camera","serial":7,)" + kCamera + "}");
   EXPECT_EQ(move.serial, 7U);
   EXPECT_EQ(move.camera, (Camera{{0, -500, 20}, {0, 0, 20.5}, {0, 0, 1}, 30}));
@@ -36,6 +36,12 @@ TEST(PageMessage, EachMessageOfTheProtocolIsDecoded) {
   const auto size = decoded<Resize>(R"({"type":"size","serial":3,"width":640,"height":480})");
   EXPECT_EQ(size.width, 640);
   EXPECT_EQ(size.height, 480);
+  const auto display =
+      decoded<Display>(R"({"type":"display","serial":4,"filter":"box","update":"50","cine":true})");
+  EXPECT_EQ(display.serial, 4U);
+  EXPECT_EQ(display.filter, "box");
+  EXPECT_EQ(display.update, "50");
+  EXPECT_TRUE(display.cine);
   decoded<Drive>(R"({"type":"drive"})");
   EXPECT_EQ(decoded<Ack>(R"({"type":"ack","picture":4294967295})").picture, 4294967295U);
   EXPECT_EQ(decoded<Ping>(R"({"type":"ping","time":12.5})").time, 12.5);
@@ -54,8 +60,8 @@ TEST(PageMessage, EverythingElseIsMalformed) {
       R"({"type":"halo"})",
       R"({"type":"hello"})",
       R"({"type":"hello","protocol":"1"})",
-      R"({"type":"hello","protocol":1.5})",
-      R"({"type":"hello","protocol":1} x)",
+      R"({"type":"hello","protocol":2.5})",
+      R"({"type":"hello","protocol":2} x)",
       R"({"type":"camera","serial":1})",
       R"({"type":"camera",)" + kCamera + "}",
       R"({"type":"camera","serial":0,)" + kCamera + "}",
@@ -73,6 +79,12 @@ TEST(PageMessage, EverythingElseIsMalformed) {
       R"({"type":"edit","serial":1,"edit":[]})",
       R"({"type":"size","serial":1,"width":64})",
       R"({"type":"size","serial":1,"width":64.5,"height":64})",
+      R"({"type":"display","filter":"box","update":"50","cine":true})",
+      R"({"type":"display","serial":1,"update":"50","cine":true})",
+      R"({"type":"display","serial":1,"filter":1,"update":"50","cine":true})",
+      R"({"type":"display","serial":1,"filter":"box","update":50,"cine":true})",
+      R"({"type":"display","serial":1,"filter":"box","update":"50","cine":1})",
+      R"({"type":"display","serial":1,"filter":"box","update":"50"})",
       R"({"type":"ack"})",
       R"({"type":"ack","picture":-3})",
       R"({"type":"ping","time":null})",
@@ -130,6 +142,35 @@ TEST(PageMessage, ACameraMustBeAbleToSee) {
   EXPECT_TRUE(refused([](Camera& c) { c.fovy_deg = 0; }));
   EXPECT_TRUE(refused([](Camera& c) { c.fovy_deg = 180; }));
   EXPECT_FALSE(refused([](Camera& c) { c.up *= 1e-6; }));
+}
+
+TEST(PageMessage, DisplaySettingsHaveTheNamesOfTheProtocol) {
+  const std::pair<const char*, Filter> filters[] = {
+      {"box", Filter::kBox},
+      {"bilinear", Filter::kBilinear},
+      {"biquadratic", Filter::kBiquadratic},
+      {"piecewise-quadratic", Filter::kPiecewiseQuadratic},
+      {"bicubic", Filter::kBicubic}};
+  const std::pair<const char*, Update> updates[] = {{"100", Update::kAll},
+                                                    {"50", Update::kHalf},
+                                                    {"25", Update::kQuarter},
+                                                    {"frameless", Update::kFrameless}};
+  for (const auto& [filter, as_filter] : filters) {
+    for (const auto& [update, as_update] : updates) {
+      const auto settings = settings_of(Display{1, filter, update, true});
+      ASSERT_TRUE(settings.ok()) << filter << " " << update;
+      EXPECT_EQ(*settings, (DisplaySettings{as_filter, as_update, true}));
+    }
+  }
+  for (const char* unknown : {"", "Box", "75", "boxes", "<b>"}) {
+    const auto filter = settings_of(Display{1, unknown, "50", false});
+    ASSERT_FALSE(filter.ok());
+    EXPECT_EQ(filter.failure().where, "display.filter");
+    const auto update = settings_of(Display{1, "box", unknown, false});
+    ASSERT_FALSE(update.ok());
+    EXPECT_EQ(update.failure().where, "display.update");
+    EXPECT_EQ(update.failure().line().find("<b>"), std::string::npos);
+  }
 }
 
 TEST(PageMessage, SizesRunFrom16To4096) {

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <limits>
 #include <stdexcept>
 
 namespace goldthread {
@@ -14,8 +15,10 @@ Picture picture_of(int regions) {
   picture.viewer = 0x11121314;
   picture.serial = 0x21222324;
   picture.size = {0x0403, 0x0605};
-  picture.spacing_px = 8;
   picture.final = true;
+  picture.cine_frame = 5;
+  picture.cine_frames = 7;
+  picture.estimated_error = 0.3125F;
   for (int i = 0; i < regions; ++i) {
     picture.regions.push_back({{0x0102, 0x0203, 0x0301, 0x0402}, 2, {std::byte{9}}});
   }
@@ -24,7 +27,7 @@ Picture picture_of(int regions) {
 
 TEST(RegionCodec, EachFieldLiesWhereTheProtocolSays) {
   const RegionHeaderBytes bytes = encode(region_header(picture_of(3), 1, 0x31323334));
-  const unsigned char expected[40] = {
+  const unsigned char expected[kRegionHeaderBytes] = {
       0x47, 0x54, 0x52, 0x47,                          // 0x47525447, little endian
       0x34, 0x33, 0x32, 0x31,                          // picture
       0x04, 0x03, 0x02, 0x01,                          // epoch
@@ -32,8 +35,10 @@ TEST(RegionCodec, EachFieldLiesWhereTheProtocolSays) {
       0x24, 0x23, 0x22, 0x21,                          // serial
       0x02, 0x01, 0x03, 0x02, 0x01, 0x03, 0x02, 0x04,  // x, y, width, height
       0x03, 0x04, 0x05, 0x06,                          // image
-      2,    1,    3,    8,    1,    0,    0,    0};    // encoding, index, count, spacing, final
-  for (std::size_t i = 0; i < 40; ++i) {
+      2,    1,    3,    0,                             // encoding, index, count, zero
+      1,    5,    7,    0,                             // final, cine frame, cine frames, zero
+      0x00, 0x00, 0xa0, 0x3e};                         // estimated error
+  for (std::size_t i = 0; i < kRegionHeaderBytes; ++i) {
     EXPECT_EQ(std::to_integer<int>(bytes[i]), expected[i]) << "offset " << i;
   }
 }
@@ -61,14 +66,24 @@ TEST(RegionCodec, ShortHeadersAreRefused) {
 TEST(RegionCodec, ImpossibleFieldsAreRefused) {
   const RegionHeaderBytes good = encode(region_header(picture_of(3), 1, 1));
   ASSERT_TRUE(decode_region_header(good).ok());
-  const std::pair<std::size_t, int> spoilt[] = {{0, 0},  {3, 0},  {21, 0xff}, {32, 0},
-                                                {32, 3}, {33, 3}, {34, 1},    {36, 2},
-                                                {37, 1}, {38, 1}, {39, 1},    {27, 0xff}};
+  const std::pair<std::size_t, int> spoilt[] = {{0, 0},  {3, 0},  {21, 0xff}, {32, 0}, {32, 3},
+                                                {33, 3}, {34, 1}, {35, 8},    {36, 2}, {37, 0},
+                                                {37, 8}, {38, 0}, {38, 6},    {39, 1}, {27, 0xff}};
   for (const auto& [offset, value] : spoilt) {
     RegionHeaderBytes bytes = good;
     bytes[offset] = static_cast<std::byte>(value);
     EXPECT_FALSE(decode_region_header(bytes).ok()) << "offset " << offset << " = " << value;
   }
+}
+
+TEST(RegionCodec, AnErrorThatIsNoNumberIsRefused) {
+  RegionHeader header = region_header(picture_of(1), 0, 1);
+  for (const float error : {-1.0F, 0.0F, 1e30F}) {
+    header.estimated_error = error;
+    EXPECT_TRUE(decode_region_header(encode(header)).ok()) << error;
+  }
+  header.estimated_error = std::numeric_limits<float>::quiet_NaN();
+  EXPECT_FALSE(decode_region_header(encode(header)).ok());
 }
 
 TEST(RegionCodec, APictureThatCannotBeSentIsTheCallersBug) {
@@ -86,6 +101,15 @@ TEST(RegionCodec, APictureThatCannotBeSentIsTheCallersBug) {
   Picture wide = picture_of(1);
   wide.size.width = 65536;
   EXPECT_THROW(check_picture(wide), std::invalid_argument);
+  for (const auto& [frame, frames] : {std::pair{0, 7}, {8, 7}, {1, 0}, {1, 6}}) {
+    Picture cine = picture_of(1);
+    cine.cine_frame = static_cast<std::uint8_t>(frame);
+    cine.cine_frames = static_cast<std::uint8_t>(frames);
+    EXPECT_THROW(check_picture(cine), std::invalid_argument) << frame << " of " << frames;
+  }
+  Picture unsure = picture_of(1);
+  unsure.estimated_error = std::numeric_limits<float>::quiet_NaN();
+  EXPECT_THROW(check_picture(unsure), std::invalid_argument);
   Picture coded = picture_of(1);
   coded.regions[0].encoding = 3;
   EXPECT_THROW(check_picture(coded), std::invalid_argument);

@@ -12,13 +12,21 @@ namespace {
 
 using Json = nlohmann::json;
 
-constexpr const char* kHello = R"({"type":"hello","protocol":1})";
+constexpr const char* kHello = R"({"type":"hello","protocol":2})";
 
 Picture picture_of(std::size_t regions, std::uint32_t epoch = 1) {
   Picture picture;
   picture.epoch = {epoch};
   picture.size = {64, 64};
   picture.regions.assign(regions, {{0, 0, 64, 64}, 1, {std::byte{7}}});
+  return picture;
+}
+
+Picture cine_frame(std::uint8_t frame, ImageSize size = {64, 64}) {
+  Picture picture = picture_of(2);
+  picture.cine_frame = frame;
+  picture.cine_frames = 7;
+  picture.size = size;
   return picture;
 }
 
@@ -40,7 +48,7 @@ class SessionTest : public testing::Test {
     session_.receive_text(viewer, kHello);
     return viewer;
   }
-  void set_welcome() { session_.set_welcome(R"({"type":"welcome","protocol":1})"); }
+  void set_welcome() { session_.set_welcome(R"({"type":"welcome","protocol":2})"); }
 
   std::vector<Frame> drain(Viewer viewer) {
     std::vector<Frame> frames;
@@ -115,7 +123,7 @@ TEST_F(SessionTest, APageIsToldThatTheVolumeIsLoadingUntilItIsWelcome) {
   const auto welcomed = texts(viewer);
   ASSERT_EQ(welcomed.size(), 1U);
   EXPECT_EQ(welcomed[0], (Json{{"type", "welcome"},
-                               {"protocol", 1},
+                               {"protocol", 2},
                                {"viewer", viewer},
                                {"driver", viewer},
                                {"viewers", 2}}));
@@ -148,7 +156,7 @@ TEST_F(SessionTest, ASecondWelcomeIsForLaterPagesOnly) {
   set_welcome();
   const Viewer viewer = enter();
   texts(viewer);
-  session_.set_welcome(R"({"type":"welcome","protocol":1,"scene":2})");
+  session_.set_welcome(R"({"type":"welcome","protocol":2,"scene":2})");
   EXPECT_TRUE(texts(viewer).empty());
   const Viewer later = enter();
   EXPECT_EQ(texts(later).at(0).at("scene"), 2);
@@ -172,7 +180,7 @@ TEST_F(SessionTest, HelloComesFirstAndOnce) {
 
 TEST_F(SessionTest, AnotherProtocolIsRefusedWithItsNumberAndClosed) {
   const Viewer viewer = session_.open();
-  session_.receive_text(viewer, R"({"type":"hello","protocol":2})");
+  session_.receive_text(viewer, R"({"type":"hello","protocol":1})");
   const auto frames = drain(viewer);
   ASSERT_EQ(frames.size(), 2U);
   const Json refused = Json::parse(*std::get<TextFrame>(frames[0]).text);
@@ -306,6 +314,30 @@ TEST_F(SessionTest, ValuesOutOfRangeAreRefusedAndThePageStays) {
   EXPECT_EQ(sizes[0].serial, 2U);
 }
 
+TEST_F(SessionTest, TheDriverChoosesHowItIsDisplayed) {
+  set_welcome();
+  const Viewer driver = enter();
+  const Viewer watcher = enter();
+  const auto display = [](std::uint32_t serial, const std::string& filter) {
+    return R"({"type":"display","filter":")" + filter + R"(","update":"25","cine":true,"serial":)" +
+           std::to_string(serial) + "}";
+  };
+  texts(driver);
+  session_.receive_text(watcher, display(1, "box"));
+  session_.receive_text(driver, display(1, "bicubic"));
+  session_.receive_text(driver, display(2, "sinc"));
+  const auto inputs = events<DisplayInput>();
+  ASSERT_EQ(inputs.size(), 1U);
+  EXPECT_EQ(inputs[0].viewer, driver);
+  EXPECT_EQ(inputs[0].serial, 1U);
+  EXPECT_EQ(inputs[0].display, (DisplaySettings{Filter::kBicubic, Update::kQuarter, true}));
+  const auto refused = texts(driver);
+  ASSERT_EQ(refused.size(), 1U);
+  EXPECT_EQ(refused[0].at("type"), "refused");
+  EXPECT_EQ(refused[0].at("where"), "display.filter");
+  EXPECT_EQ(refused[0].at("serial"), 2);
+}
+
 TEST_F(SessionTest, APingIsAnsweredWithItsTime) {
   const Viewer viewer = enter();
   texts(viewer);
@@ -383,6 +415,39 @@ TEST_F(SessionTest, APictureThatWasBegunIsFinishedBeforeTheNextOne) {
   }
   EXPECT_EQ(order, (std::vector<std::pair<std::uint32_t, std::size_t>>{
                        {2, 0}, {2, 1}, {2, 2}, {5, 0}, {5, 1}, {5, 2}}));
+}
+
+TEST_F(SessionTest, FramesOfACineLoopDoNotOvertakeEachOther) {
+  set_welcome();
+  const Viewer viewer = enter();
+  drain(viewer);
+  session_.publish(picture_of(1));
+  EXPECT_EQ(pictures(viewer), std::vector<std::uint32_t>{1});
+  for (std::uint8_t frame = 1; frame <= 7; ++frame) session_.publish(cine_frame(frame));
+  std::vector<std::uint32_t> sent;
+  for (bool more = true; more;) {
+    const auto now = pictures(viewer);
+    more = !now.empty();
+    sent.insert(sent.end(), now.begin(), now.end());
+    if (more) session_.receive_text(viewer, ack(sent.back()));
+  }
+  EXPECT_EQ(sent, (std::vector<std::uint32_t>{2, 3, 4, 5, 6, 7, 8}));
+  EXPECT_EQ(pictures(enter()), (std::vector<std::uint32_t>{2, 3})) << "a late page gets all, too";
+}
+
+TEST_F(SessionTest, ACineFrameIsOvertakenByWhatTakesItsPlace) {
+  set_welcome();
+  const auto begun = [&] { return pictures(enter()); };
+  session_.publish(picture_of(1));
+  session_.publish(cine_frame(3));
+  EXPECT_EQ(begun(), std::vector<std::uint32_t>{2}) << "a loop ends what was before it";
+  session_.publish(cine_frame(4));
+  session_.publish(cine_frame(3));
+  EXPECT_EQ(begun(), (std::vector<std::uint32_t>{3, 4})) << "the newest of each place";
+  session_.publish(cine_frame(5, {65, 64}));
+  EXPECT_EQ(begun(), std::vector<std::uint32_t>{5}) << "another size is another loop";
+  session_.publish(picture_of(1));
+  EXPECT_EQ(begun(), std::vector<std::uint32_t>{6}) << "a picture ends the loop";
 }
 
 TEST_F(SessionTest, ALatePageStartsWithTheNewestPicture) {
