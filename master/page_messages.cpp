@@ -58,6 +58,42 @@ Json rank_of(const Cluster& cluster, std::size_t i, const SessionPulse& pulse) {
           {"busy", busy},      {"tiles", rank.tiles}};
 }
 
+const char* name_of(Filter filter) {
+  switch (filter) {
+    case Filter::kBox:
+      return "box";
+    case Filter::kBilinear:
+      return "bilinear";
+    case Filter::kBiquadratic:
+      return "biquadratic";
+    case Filter::kPiecewiseQuadratic:
+      return "piecewise-quadratic";
+    case Filter::kBicubic:
+      return "bicubic";
+  }
+  return "";
+}
+
+const char* name_of(Update update) {
+  switch (update) {
+    case Update::kAll:
+      return "100";
+    case Update::kHalf:
+      return "50";
+    case Update::kQuarter:
+      return "25";
+    case Update::kFrameless:
+      return "frameless";
+  }
+  return "";
+}
+
+Json display_of(const DisplaySettings& display) {
+  return {{"filter", name_of(display.filter)},
+          {"update", name_of(display.update)},
+          {"cine", display.cine}};
+}
+
 Json failure_of(const char* type, const Failure& failure) {
   return {{"type", type}, {"where", failure.where}, {"what", failure.what}, {"mend", failure.mend}};
 }
@@ -68,9 +104,11 @@ std::string loading_message(const std::string& what, double fraction) {
   return text_of({{"type", "loading"}, {"what", what}, {"done", fraction}, {"total", 1}});
 }
 
-std::string welcome_message(const Scene& scene, const VolumeInfo& volume, bool size_fixed) {
+std::string welcome_message(const Scene& scene, const VolumeInfo& volume, bool size_fixed,
+                            const DisplaySettings& display) {
   return text_of({{"type", "welcome"},
-                  {"protocol", 1},
+                  {"protocol", 2},
+                  {"display", display_of(display)},
                   {"version", GOLDTHREAD_VERSION},
                   {"sizeFixed", size_fixed},
                   {"scene", scene_of(scene)},
@@ -99,19 +137,36 @@ std::string failed_message(const Failure& failure) {
   return text_of(failure_of("failed", failure));
 }
 
+std::string display_message(const DisplaySettings& display, std::uint32_t viewer,
+                            std::uint32_t serial) {
+  Json message = display_of(display);
+  message["type"] = "display";
+  message["viewer"] = viewer;
+  message["serial"] = serial;
+  return text_of(message);
+}
+
 std::string status_message(const Cluster& cluster, const SessionPulse& pulse) {
   const ViewState& view = cluster.view();
+  const StepState* shown = view.shown();
   Json ranks = Json::array();
   for (std::size_t i = 0; i < cluster.ranks().size(); ++i)
     ranks.push_back(rank_of(cluster, i, pulse));
+  const auto known = [&](double value) { return shown != nullptr ? Json(value) : Json(); };
+  const double error = estimated_error(view);
   return text_of({{"type", "status"},
                   {"epoch", view.epoch.value},
-                  {"spacing", view.level().value_or(kCoarsestLevel).spacing_px()},
-                  {"converged", view.finished() ? 1.0 : cluster.progress()},
-                  {"estimatedError", estimated_error(view)},
+                  {"step", view.held.value},
+                  {"samplesPerPixel", double(view.rays) / view.pixels()},
+                  {"converged", std::min(1.0, pulse.target_error / std::max(error, 1e-6))},
+                  {"target", pulse.target_error},
+                  {"estimatedError", known(error)},
+                  {"spatialError", known(pulse.spatial_px)},
+                  {"temporalError", known(pulse.temporal_px)},
+                  {"phase", pulse.phase},
                   {"framesPerSecond", pulse.frames_per_second},
                   {"rays", view.rays},
-                  {"seconds", view.complete.count()},
+                  {"seconds", shown != nullptr ? shown->held.count() : 0},
                   {"features", cluster.features()},
                   {"kernel", cluster.kernel()},
                   {"ranks", ranks}});

@@ -14,13 +14,20 @@ namespace goldthread {
 /// What a status says beyond the cluster's own state.
 struct SessionPulse {
   double frames_per_second = 0;
+  const char* phase = "refining";  ///< or moving, converged, cine
+  double target_error = 0;         ///< RMS in 1/255
+  double spatial_px = 0;           ///< of the view that is refined
+  double temporal_px = 0;
   double seconds = 0;               ///< since the last status
   std::vector<double> busy_before;  ///< each rank's busy_seconds at the last status
 };
 
 std::string loading_message(const std::string& what, double fraction);
 /// Without viewer, driver and viewers, which the gateway knows.
-std::string welcome_message(const Scene& scene, const VolumeInfo& volume, bool size_fixed);
+std::string welcome_message(const Scene& scene, const VolumeInfo& volume, bool size_fixed,
+                            const DisplaySettings& display);
+std::string display_message(const DisplaySettings& display, std::uint32_t viewer,
+                            std::uint32_t serial);
 std::string view_message(const Camera& camera, ImageSize size);
 std::string scene_message(const Scene& scene, std::uint32_t viewer, std::uint32_t serial);
 std::string refused_message(std::uint32_t serial, const Failure& failure);

@@ -5,14 +5,15 @@
 
 #include "common/scene/camera.h"
 #include "common/scene/scene_edit.h"
-#include "master/levels.h"
+#include "master/report.h"
+#include "master/temporal_error.h"
 
 namespace goldthread {
 namespace {
 
-/// Decisions also depend on the time that passes; at rest they do not.
-constexpr std::chrono::milliseconds kPollTime{5};
-constexpr std::chrono::milliseconds kRestPollTime{50};
+/// Decisions also depend on the time that passes, but at rest they hardly do.
+constexpr std::chrono::milliseconds kPollTime{1};
+constexpr std::chrono::milliseconds kRestPollTime{20};
 constexpr std::chrono::milliseconds kStatusInterval{250};
 constexpr std::chrono::seconds kRateWindow{1};
 
@@ -36,7 +37,7 @@ void ServeJob::run() {
   load();
   begin_view();
   while (!request_.ended()) {
-    if (auto event = cluster_.poll(settled_ ? kRestPollTime : kPollTime)) {
+    if (auto event = cluster_.poll(final_error_ ? kRestPollTime : kPollTime)) {
       std::visit([&](const auto& value) { on(value); }, *event);
     }
     act();
@@ -63,32 +64,44 @@ void ServeJob::load() {
   request_.loaded(volume_);
   scene_ = request_.resolve(scene_, volume_);
   cluster_.commit(scene_);
-  to_pages(Welcome{welcome_message(scene_, volume_, request_.size.has_value())});
+  say_welcome();
 }
 
-void ServeJob::on(const LevelReady&) { frame_.better_ready = true; }
+void ServeJob::say_welcome() {
+  to_pages(Welcome{
+      welcome_message(scene_, volume_, request_.size.has_value(), request_.display)});
+}
+
+/// The golden thread: the step that is repeated for ever.
+void ServeJob::on(const StepCast&) {
+  if (cluster_.view().cast() < kLastStep && !cine_.complete()) cluster_.refine_further();
+}
 
 void ServeJob::on(const WorkerLost& event) { request_.worker_lost(event.rank); }
-
-void ServeJob::on(const BandPicture&) {}
 
 void ServeJob::on(const GatewayOpened& event) {
   open_ = true;
   request_.opened(event.port);
 }
 
-void ServeJob::on(const Audience& event) { frame_.audience_ready = event.ready; }
+void ServeJob::on(const Audience& event) { audience_ready_ = event.ready; }
 
-void ServeJob::note_input(std::uint32_t viewer, std::uint32_t serial, bool scene) {
-  waiting_ = {true, waiting_.scene || scene, viewer, serial};
+void ServeJob::note_input(std::uint32_t viewer, std::uint32_t serial) {
+  newest_viewer_ = viewer;
+  newest_serial_ = serial;
   last_input_ = Clock::now();
+}
+
+void ServeJob::want_view(bool scene) {
+  waiting_ = {true, waiting_.scene || scene};
 }
 
 void ServeJob::on(const ViewerCamera& event) {
   if (camera_fault(event.camera).any())
     return;  // a page that drives itself into a corner stays there
   scene_.camera = event.camera;
-  note_input(event.viewer, event.serial, false);
+  note_input(event.viewer, event.serial);
+  want_view(false);
 }
 
 void ServeJob::on(const ViewerEdit& event) {
@@ -98,9 +111,11 @@ void ServeJob::on(const ViewerEdit& event) {
     return;
   }
   scene_ = request_.resolve(*edited, volume_);
-  note_input(event.viewer, event.serial, true);
+  ++edits_;
+  note_input(event.viewer, event.serial);
+  want_view(true);
   to_pages(Broadcast{scene_message(scene_, event.viewer, event.serial)});
-  to_pages(Welcome{welcome_message(scene_, volume_, request_.size.has_value())});
+  say_welcome();
 }
 
 void ServeJob::on(const ViewerSize& event) {
@@ -111,20 +126,75 @@ void ServeJob::on(const ViewerSize& event) {
     return;
   }
   scene_.image.size = event.size;
-  note_input(event.viewer, event.serial, false);
+  note_input(event.viewer, event.serial);
+  reshow_ = true;  // what is there serves until there is better
+  if (covers_size()) {
+    to_pages(Broadcast{view_message(*scene_.camera, scene_.image.size)});
+    return;
+  }
+  ++edits_;
+  want_view(false);
+}
+
+void ServeJob::on(const ViewerDisplay& event) {
+  const bool ends_cine = !event.display.cine && !cine_.idle();
+  reshow_ = reshow_ || event.display.filter != request_.display.filter;
+  request_.display = event.display;
+  note_input(event.viewer, event.serial);
+  if (ends_cine) want_view(false);
+  to_pages(Broadcast{display_message(event.display, event.viewer, event.serial)});
+  say_welcome();
+}
+
+bool ServeJob::covers_size() const {
+  const ImageSize held = cluster_.view().grid.image, wanted = scene_.image.size;
+  return wanted.height <= held.height &&
+         std::int64_t{wanted.width} * held.height <= std::int64_t{held.width} * wanted.height;
+}
+
+bool ServeJob::is_moving() const { return since(last_input_) < kMovementPause; }
+
+double ServeJob::spatial_px() const {
+  const StepState* shown = cluster_.view().shown();
+  if (shown == nullptr) return kLargestSpatialErrorPx;
+  return spatial_error_px(shown->quality.squared_error, shown->quality.squared_gradient);
+}
+
+PictureErrors ServeJob::errors_of(const Shown& picture) const {
+  PictureErrors errors;
+  errors.edits_behind = static_cast<int>(edits_ - picture.edits);
+  errors.spatial_px = picture.spatial_px;
+  errors.temporal_px = temporal_error_px(cluster_.visible_points(), picture.camera, *scene_.camera,
+                                         scene_.image.size);
+  return errors;
 }
 
 FrameState ServeJob::frame_state() const {
-  FrameState state = frame_;
+  FrameState state;
   state.input_waiting = waiting_.any;
-  state.moving = since(last_input_) < kMovementPause;
-  state.finished = cluster_.view().finished();
-  state.elapsed = since(cluster_.view().begin);
-  state.next_level = cluster_.predict_next_level();
+  state.audience_ready = audience_ready_;
+  state.cine_wanted = request_.display.cine && cine_.idle();
+  state.has_picture = has_picture();
+  state.shown = front_ && front_->epoch == cluster_.view().epoch;
+  if (front_) state.front = errors_of(*front_);
+  Shown back = back_;
+  back.spatial_px = spatial_px();
+  state.back = errors_of(back);
+  state.estimated_error = estimated_error(cluster_.view());
+  state.target_error = request_.stop.error;
+  state.final_error = final_error_;
+  state.since_begun = since(cluster_.view().begin);
+  state.since_input = since(last_input_);
+  state.since_shown = since(last_show_);
   return state;
 }
 
 void ServeJob::act() {
+  if (!cine_.idle() && !waiting_.any) return advance_cine();
+  if (reshow_ && audience_ready_ && has_picture() && front_) {
+    show(final_error_.has_value());
+    reshow_ = false;
+  }
   switch (decide(frame_state())) {
     case FrameAction::kRefine:
       return;
@@ -137,48 +207,91 @@ void ServeJob::act() {
       return begin_view();
     case FrameAction::kSwitch:
       return begin_view();
+    case FrameAction::kCine:
+      cine_.begin(*scene_.camera);
+      return cast(cine_.camera());
   }
+}
+
+void ServeJob::advance_cine() {
+  if (!cine_.frame() || !audience_ready_ || !has_picture()) return;
+  if (estimated_error(cluster_.view()) > request_.stop.error) return;
+  show(false);
+  cine_.frame_done();
+  if (cine_.frame()) cast(cine_.camera());
 }
 
 void ServeJob::begin_view() {
   if (waiting_.scene) cluster_.commit(scene_);
-  viewer_ = waiting_.viewer;
-  serial_ = waiting_.serial;
   waiting_ = {};
-  const bool ready = frame_.audience_ready;
-  frame_ = {};
-  frame_.audience_ready = ready;
-  settled_ = false;
+  cine_.reset();
   to_pages(Broadcast{view_message(*scene_.camera, scene_.image.size)});
-  cluster_.begin_view(scene_, request_.grid(scene_.image.size), progressive_levels());
+  cast(*scene_.camera);
+}
+
+void ServeJob::cast(const Camera& camera) {
+  viewer_ = newest_viewer_;
+  serial_ = newest_serial_;
+  final_error_.reset();
+  back_ = {camera, edits_, {}, kLargestSpatialErrorPx};
+  Scene scene = scene_;
+  scene.camera = camera;
+  const Update update = is_moving() && cine_.idle() ? request_.display.update : Update::kAll;
+  cluster_.begin_view(scene, {request_.grid(scene_.image.size), refinement_of(request_.stop),
+                              update, moving_frame_++});
+  back_.epoch = cluster_.view().epoch;
 }
 
 void ServeJob::show(bool final) {
-  for (int c = 0; c < cluster_.topology().compositors; ++c) {
-    cluster_.post().to_compositor(
-        cluster_.topology().compositor(c),
-        Present{cluster_.view().epoch, picture_ + 1, viewer_, serial_, final, final});
+  const ViewState& view = cluster_.view();
+  Present present;
+  present.epoch = view.epoch;
+  present.picture = ++picture_;
+  present.viewer = waiting_.any ? viewer_ : newest_viewer_;
+  present.serial = waiting_.any ? serial_ : newest_serial_;
+  present.filter = request_.display.filter;
+  present.size = covers_size() || reshow_ ? scene_.image.size : view.grid.image;
+  present.lossless = final;
+  present.final = final;
+  present.estimated_error = static_cast<float>(estimated_error(view));
+  if (const auto frame = cine_.frame()) {
+    present.cine_frame = static_cast<std::uint8_t>(*frame + 1);
+    present.cine_frames = static_cast<std::uint8_t>(cine_.frames());
   }
-  ++picture_;
-  frame_.better_ready = false;
-  frame_.shown = true;
-  frame_.final_shown = final;
-  shown_at_.push_back(Clock::now());
+  for (int c = 0; c < cluster_.topology().compositors; ++c)
+    cluster_.post().to_compositor(cluster_.topology().compositor(c), present);
+  front_ = back_;
+  front_->spatial_px = spatial_px();
+  if (final) final_error_ = estimated_error(view);
+  last_show_ = Clock::now();
+  shown_at_.push_back(last_show_);
+}
+
+const char* ServeJob::phase() const {
+  if (!cine_.idle()) return "cine";
+  if (is_moving()) return "moving";
+  return final_error_ ? "converged" : "refining";
 }
 
 void ServeJob::tell_status() {
   const auto passed = since(last_status_);
-  if (passed < kStatusInterval || settled_) return;
+  const bool is_new = cluster_.view().held != told_step_ || !final_error_ || !shown_at_.empty();
+  if (passed < kStatusInterval || !is_new) return;
   last_status_ = Clock::now();
+  told_step_ = cluster_.view().held;
   while (!shown_at_.empty() && Clock::now() - shown_at_.front() > kRateWindow)
     shown_at_.pop_front();
   pulse_.frames_per_second = static_cast<double>(shown_at_.size());
+  pulse_.phase = phase();
+  pulse_.target_error = request_.stop.error;
+  pulse_.spatial_px = spatial_px();
+  pulse_.temporal_px = temporal_error_px(cluster_.visible_points(), back_.camera, *scene_.camera,
+                                         scene_.image.size);
   pulse_.seconds = 1e-6 * static_cast<double>(passed.count());
   to_pages(Broadcast{status_message(cluster_, pulse_)});
   pulse_.busy_before.clear();
   for (const RankState& rank : cluster_.ranks()) pulse_.busy_before.push_back(rank.busy_seconds);
   cluster_.request_counters();
-  settled_ = frame_.final_shown && shown_at_.empty();
 }
 
 }  // namespace goldthread

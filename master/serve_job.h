@@ -8,9 +8,11 @@
 #include <optional>
 #include <string>
 
+#include "master/cine_loop.h"
 #include "master/cluster.h"
 #include "master/frame_policy.h"
 #include "master/page_messages.h"
+#include "master/stop_rule.h"
 
 namespace goldthread {
 
@@ -19,6 +21,8 @@ struct ServeRequest {
   std::uint16_t port = 0;
   std::string token;
   std::optional<ImageSize> size;  ///< fixed by the user; else the page may choose
+  StopRule stop;  ///< when a picture is good enough to be shown without loss
+  DisplaySettings display;
   std::function<TileGrid(ImageSize)> grid;
   /// The scene with everything chosen that it leaves open.
   std::function<Scene(const Scene&, const VolumeInfo&)> resolve;
@@ -40,27 +44,46 @@ class ServeJob {
   struct Waiting {
     bool any = false;
     bool scene = false;  ///< the scene itself changed, not only the camera
-    std::uint32_t viewer = 0;
-    std::uint32_t serial = 0;
+  };
+  /// What a picture shows.
+  struct Shown {
+    Camera camera;
+    std::uint32_t edits = 0;  ///< changes of scene and size so far
+    Epoch epoch;
+    double spatial_px = 0;
   };
 
   void open_gateway();
   void load();
-  void on(const LevelReady& event);
+  void on(const StepCast& event);
+  void on(const StepHeld&) {}
   void on(const WorkerLost& event);
-  void on(const BandPicture& event);
+  void on(const BandPicture&) {}
   void on(const GatewayOpened& event);
   void on(const ViewerCamera& event);
   void on(const ViewerEdit& event);
   void on(const ViewerSize& event);
+  void on(const ViewerDisplay& event);
   void on(const Audience& event);
-  void note_input(std::uint32_t viewer, std::uint32_t serial, bool scene);
+  void note_input(std::uint32_t viewer, std::uint32_t serial);
+  /// The view must be cast anew.
+  void want_view(bool scene);
   void act();
   void begin_view();
+  void cast(const Camera& camera);
   void show(bool final);
+  void advance_cine();
   void tell_status();
+  const char* phase() const;
+  bool is_moving() const;
+  bool has_picture() const { return cluster_.view().held > kNoStep; }
+  /// Whether the samples of the view cover a picture of the wanted size.
+  bool covers_size() const;
   FrameState frame_state() const;
+  PictureErrors errors_of(const Shown& picture) const;
+  double spatial_px() const;
   void to_pages(ToCompositor message);
+  void say_welcome();
 
   Cluster& cluster_;
   Scene scene_;  ///< the newest; resolved once the volume is loaded
@@ -71,13 +94,23 @@ class ServeJob {
   Waiting waiting_;
   std::uint32_t viewer_ = 0;  ///< whose input is the newest in the view being cast
   std::uint32_t serial_ = 0;
+  std::uint32_t newest_viewer_ = 0;  ///< whose input is the newest of all
+  std::uint32_t newest_serial_ = 0;
   Clock::time_point last_input_{};
-  FrameState frame_;
+  std::uint32_t edits_ = 0;
+  Shown back_;                  ///< what the view being cast shows
+  std::optional<Shown> front_;  ///< what the pages show
+  std::optional<double> final_error_;
+  bool audience_ready_ = false;
+  bool reshow_ = false;  ///< the same samples are wanted in another form
+  std::uint32_t moving_frame_ = 0;
+  CineLoop cine_;
   std::uint32_t picture_ = 0;
   std::deque<Clock::time_point> shown_at_;
+  Clock::time_point last_show_{};
   Clock::time_point last_status_{};
+  Step told_step_;
   SessionPulse pulse_;
-  bool settled_ = false;  ///< the status of the view at rest has been told
 };
 
 }  // namespace goldthread

@@ -6,12 +6,14 @@
 #include "common/scene/scene.h"
 #include "common/tile/tile_grid.h"
 #include "common/volume/volume.h"
+#include "master/stop_rule.h"
 
 namespace goldthread {
 
 /// The scene of the command line, the options that overrule it applied. Throws FatalError.
 Scene scene_of(const Options& options);
 TileGrid grid_of(const Options& options, ImageSize image);
+StopRule stop_rule_of(const Options& options);
 /// What the user should know, one line each, to the log.
 void log_volume(const VolumeInfo& info);
 void log_lost_worker(Rank rank);

@@ -42,6 +42,8 @@ void run_serve(Cluster& cluster, const Options& options) {
   request.token = token;
   if (size_given) request.size = scene.image.size;
   request.grid = [&](ImageSize size) { return grid_of(options, size); };
+  request.stop = stop_rule_of(options);
+  request.display = {options.filter, options.update, false};
   request.resolve = resolve_scene;
   request.ended = interrupted;
   request.worker_lost = log_lost_worker;
