@@ -1,69 +1,77 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "compositor/sample_array.h"
 
+#include <algorithm>
+#include <cstring>
+
 namespace goldthread {
-namespace {
 
-std::size_t index_of(Level level) { return static_cast<std::size_t>(level.log2_spacing); }
-
-}  // namespace
-
-TileSamples::TileSamples(PixelRect rect) : rect_(rect) {
-  // The coarsest grid may reach further than one place beyond the last pixel.
-  const int spacing = kCoarsestLevel.spacing_px();
-  const auto reach = [&](int extent) { return (extent + spacing - 1) / spacing * spacing + 1; };
-  stride_ = reach(rect.width);
-  samples_.resize(static_cast<std::size_t>(stride_) * static_cast<std::size_t>(reach(rect.height)));
+TileSamples::TileSamples(PixelRect rect)
+    : rect_(rect), stride_(places_along(rect.width)), rows_(places_along(rect.height)) {
+  const auto places = static_cast<std::size_t>(stride_) * static_cast<std::size_t>(rows_);
+  samples_.resize(places);
+  known_.resize(places);
 }
 
-std::optional<Level> TileSamples::level() const {
-  Level reached = kNoLevel;
-  while (const auto& next = steps_[index_of(reached)]) {
-    reached = *next;
-    if (reached == kPixelLevel) break;
+bool TileSamples::place(const Samples& message) {
+  const std::size_t count = message.count;
+  if (!is_step(message.from, message.to) ||
+      message.packed.size() / (sizeof(Sample) + sizeof(SampleOffset)) != count ||
+      message.packed.size() % (sizeof(Sample) + sizeof(SampleOffset)) != 0)
+    return false;
+  std::vector<SampleOffset> places(count);
+  const std::byte* const colors = message.packed.data();
+  if (count > 0)
+    std::memcpy(places.data(), colors + count * sizeof(Sample), count * sizeof(SampleOffset));
+  const bool inside = std::all_of(places.begin(), places.end(), [&](SampleOffset place) {
+    return place.x < stride_ && place.y < rows_;
+  });
+  if (!inside) return false;
+  const auto step = static_cast<std::uint8_t>(message.to.value);
+  for (std::size_t i = 0; i < count; ++i) {
+    const auto at = static_cast<std::size_t>(places[i].y * stride_ + places[i].x);
+    if (known_[at] > step) continue;
+    known_[at] = step;
+    std::memcpy(&samples_[at], colors + i * sizeof(Sample), sizeof(Sample));
   }
-  if (reached == kNoLevel) return {};
-  return reached;
-}
-
-bool TileSamples::place(Level from, Level to, std::span<const Sample> samples) {
-  if (!is_step(from, to)) return false;
-  const auto offsets = new_samples({rect_.width, rect_.height}, from, to);
-  if (offsets.size() != samples.size()) return false;
-  for (std::size_t i = 0; i < offsets.size(); ++i) {
-    samples_[static_cast<std::size_t>(offsets[i].y * stride_ + offsets[i].x)] = samples[i];
-  }
-  auto& step = steps_[index_of(from)];
-  if (!step || to.log2_spacing < step->log2_spacing) step = to;
+  note(message.from, message.to);
   return true;
 }
 
+void TileSamples::note(Step from, Step to) {
+  ahead_.emplace_back(from, to);
+  for (bool further = true; further;) {
+    further = false;
+    for (const auto& [first, last] : ahead_) {
+      if (first > step_ || last <= step_) continue;
+      step_ = last;
+      further = true;
+    }
+  }
+  std::erase_if(ahead_, [&](const auto& quantum) { return quantum.second <= step_; });
+}
+
 SampleArray::SampleArray(const TileGrid& grid, Band band)
-    : grid_(grid), band_(band), rect_(band_rect(grid, band)) {
+    : grid_(grid), band_(band), rect_(band_rect(grid, band)), at_step_(kLastStep.value + 1U) {
   const auto columns = static_cast<std::uint32_t>(grid.columns());
   const auto first = static_cast<std::uint32_t>(band.first_row) * columns;
   const auto last = static_cast<std::uint32_t>(band.last_row) * columns;
   for (std::uint32_t i = first; i < last; ++i) tiles_.emplace_back(grid.rect({i}));
-  at_level_[index_of(kNoLevel)] = tiles_.size();
+  at_step_[0] = tiles_.size();
 }
 
-bool SampleArray::place(TileId tile, Level from, Level to, std::span<const Sample> samples) {
+bool SampleArray::place(const Samples& message) {
   const auto first = static_cast<std::uint32_t>(band_.first_row * grid_.columns());
-  if (tile.value < first || tile.value - first >= tiles_.size()) return false;
-  TileSamples& held = tiles_[tile.value - first];
-  const Level before = held.level().value_or(kNoLevel);
-  if (!held.place(from, to, samples)) return false;
-  --at_level_[index_of(before)];
-  ++at_level_[index_of(held.level().value_or(kNoLevel))];
+  if (message.tile.value < first || message.tile.value - first >= tiles_.size()) return false;
+  TileSamples& held = tiles_[message.tile.value - first];
+  const Step before = held.step();
+  if (!held.place(message)) return false;
+  --at_step_[before.value];
+  ++at_step_[held.step().value];
+  while (least_ < kLastStep && at_step_[least_.value] == 0) least_ = least_.next();
   return true;
 }
 
-std::optional<Level> SampleArray::level() const {
-  if (at_level_[index_of(kNoLevel)] > 0) return {};
-  for (auto log2 = kCoarsestLevel.log2_spacing; log2 > 0; --log2) {
-    if (at_level_[static_cast<std::size_t>(log2)] > 0) return Level{log2};
-  }
-  return kPixelLevel;
-}
+Step SampleArray::step() const { return tiles_.empty() ? kLastStep : least_; }
 
 }  // namespace goldthread

@@ -1,44 +1,50 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 // The samples of one view that a compositor holds: for each tile of its band one array with a place
-// for each pixel and for the replicated column and row. Samples of any level come in any order; a
-// tile counts as being at a level once that one and all coarser ones are there.
+// for each pixel and for the replicated column and row. What quanta brought comes in any order, for
+// a tile may have changed hands: a place keeps what the latest step brought, and a tile counts as
+// having taken a step once that one and all before it are there.
 
-#include <array>
-#include <optional>
+#include <cstdint>
 #include <span>
+#include <utility>
 #include <vector>
 
+#include "common/protocol/messages.h"
 #include "common/tile/sample.h"
 #include "common/tile/tile_grid.h"
 
 namespace goldthread {
 
-/// One tile's samples: a place for each pixel and for the replicated samples at or beyond the right
-/// and lower edges, rows from the top.
+/// One tile's samples, rows from the top.
 class TileSamples {
  public:
   explicit TileSamples(PixelRect rect);
 
   const PixelRect& rect() const { return rect_; }
-  const Sample& at(int x, int y) const {
-    return samples_[static_cast<std::size_t>(y * stride_ + x)];
-  }
-  const Sample* row(int y) const { return &samples_[static_cast<std::size_t>(y * stride_)]; }
+  /// Places in a row, and rows: (multiple of kCoarsestSpacing) + 1.
   int stride() const { return stride_; }
-  /// The finest level that is whole; nothing if not even the first has come.
-  std::optional<Level> level() const;
+  int rows() const { return rows_; }
+  std::span<const Sample> samples() const { return samples_; }
+  /// Which step brought each place; 0: none has.
+  std::span<const std::uint8_t> known() const { return known_; }
+  /// All steps up to this one are there.
+  Step step() const { return step_; }
 
-  /// Puts the samples of a quantum in their places, `samples` in the order of new_samples(). False,
-  /// and nothing changed, if they are not as many as that, or the levels make no sense.
-  bool place(Level from, Level to, std::span<const Sample> samples);
+  /// Puts the samples of a quantum in their places. False, and nothing changed, if a place lies
+  /// outside the tile, the bytes are not as many as the count says, or the steps make no sense.
+  bool place(const Samples& message);
 
  private:
+  void note(Step from, Step to);
+
   PixelRect rect_;
   int stride_ = 0;
+  int rows_ = 0;
   std::vector<Sample> samples_;
-  /// steps_[f] is the finest level that a quantum from level f brought, by binary logarithm.
-  std::array<std::optional<Level>, kNoLevel.log2_spacing + 1> steps_;
+  std::vector<std::uint8_t> known_;
+  Step step_ = kNoStep;
+  std::vector<std::pair<Step, Step>> ahead_;  ///< quanta that came before an earlier one
 };
 
 class SampleArray {
@@ -46,10 +52,9 @@ class SampleArray {
   SampleArray(const TileGrid& grid, Band band);
 
   /// False if the tile is not of this band, or TileSamples::place refuses.
-  bool place(TileId tile, Level from, Level to, std::span<const Sample> samples);
-  /// The level that each tile has reached; nothing if one has none. A band without tiles is at the
-  /// pixel level.
-  std::optional<Level> level() const;
+  bool place(const Samples& message);
+  /// The step that every tile has taken; the last one of all for a band without tiles.
+  Step step() const;
   std::span<const TileSamples> tiles() const { return tiles_; }
   const TileGrid& grid() const { return grid_; }
   /// The band's pixels in the image.
@@ -60,8 +65,8 @@ class SampleArray {
   Band band_;
   PixelRect rect_;
   std::vector<TileSamples> tiles_;
-  /// How many tiles are at each level, by binary logarithm; the last counts those without any.
-  std::array<std::size_t, kNoLevel.log2_spacing + 1> at_level_{};
+  std::vector<std::size_t> at_step_;  ///< how many tiles have taken so many steps and no more
+  Step least_ = kNoStep;
 };
 
 }  // namespace goldthread

@@ -5,7 +5,7 @@
 
 #include <utility>
 
-#include "worker/cast_quantum.h"
+#include "worker/refine_tile.h"
 
 namespace goldthread {
 namespace {
@@ -17,10 +17,13 @@ void give_way() {
   sched_setscheduler(0, SCHED_IDLE, &parameters);
 }
 
+/// What tiles of a view may keep; a tile of 64×64 pixels takes about 150 kB.
+constexpr std::size_t kMostTileBytes = std::size_t{1} << 29;
+
 }  // namespace
 
 ComputePool::ComputePool(unsigned threads, bool idle_priority, std::function<void()> notify)
-    : notify_(std::move(notify)) {
+    : notify_(std::move(notify)), tiles_(kMostTileBytes) {
   for (unsigned i = 0; i < threads; ++i) {
     threads_.emplace_back([this, idle_priority](const std::stop_token& stop) {
       if (idle_priority) give_way();
@@ -39,6 +42,7 @@ void ComputePool::begin_view(std::shared_ptr<const CastView> view) {
   view_ = std::move(view);
   queue_.clear();
   outbox_.clear();
+  tiles_.clear();
 }
 
 void ComputePool::push(const RenderTile& quantum) {
@@ -56,6 +60,11 @@ std::vector<ComputePool::Done> ComputePool::take_done() {
   return std::exchange(outbox_, {});
 }
 
+std::optional<Epoch> ComputePool::take_begun() {
+  const std::lock_guard lock(mutex_);
+  return std::exchange(begun_, {});
+}
+
 std::chrono::duration<double> ComputePool::busy() const {
   return std::chrono::nanoseconds(busy_ns_.load());
 }
@@ -66,9 +75,14 @@ void ComputePool::work(const std::stop_token& stop) {
     const RenderTile quantum = queue_.front();
     queue_.pop_front();
     const auto view = view_;
+    auto tile = tiles_.take(quantum.tile);
+    const bool first = last_begun_ != quantum.epoch;
+    last_begun_ = quantum.epoch;
+    if (first) begun_ = quantum.epoch;
     lock.unlock();
+    if (first) notify_();
     try {
-      cast(*view, quantum, stop);
+      cast(*view, quantum, std::move(tile), stop);
     } catch (...) {
       note_failure();
     }
@@ -85,9 +99,9 @@ void ComputePool::note_failure() {
 }
 
 void ComputePool::cast(const CastView& view, const RenderTile& quantum,
-                       const std::stop_token& stop) {
+                       std::unique_ptr<TileRefinement> tile, const std::stop_token& stop) {
   const auto begin = std::chrono::steady_clock::now();
-  auto result = cast_quantum(*view.source, view.grid, quantum, [&] {
+  auto result = refine_tile(view, quantum, std::move(tile), [&] {
     return epoch_.load(std::memory_order_relaxed) != quantum.epoch.value || stop.stop_requested();
   });
   const auto cost = std::chrono::steady_clock::now() - begin;
@@ -97,10 +111,11 @@ void ComputePool::cast(const CastView& view, const RenderTile& quantum,
   {
     const std::lock_guard lock(mutex_);
     if (quantum.epoch != view_->epoch) return;
-    outbox_.push_back(
-        {std::move(result->samples),
-         {quantum.epoch, quantum.tile, quantum.to, static_cast<std::uint32_t>(cost_us),
-          result->counts.rays, result->counts.samples}});
+    tiles_.put(quantum.tile, std::move(result->tile));
+    outbox_.push_back({std::move(result->samples),
+                       {quantum.epoch, quantum.tile, quantum.to,
+                        static_cast<std::uint32_t>(cost_us), result->counts.rays,
+                        result->counts.samples, result->quality}});
   }
   notify_();
 }

@@ -12,20 +12,15 @@
 #include <functional>
 #include <memory>
 #include <mutex>
+#include <optional>
 #include <thread>
 #include <vector>
 
 #include "common/protocol/messages.h"
-#include "worker/sample_source.h"
+#include "worker/cast_view.h"
+#include "worker/tile_store.h"
 
 namespace goldthread {
-
-/// A view that can be cast: immutable, shared by the threads that work on it.
-struct CastView {
-  Epoch epoch;
-  TileGrid grid;
-  std::shared_ptr<const SampleSource> source;
-};
 
 class ComputePool {
  public:
@@ -46,13 +41,16 @@ class ComputePool {
   /// What was finished since the last call; never of a stale epoch. Throws what a thread failed
   /// with, once.
   std::vector<Done> take_done();
+  /// The view whose first quantum a thread has begun since the last call.
+  std::optional<Epoch> take_begun();
   /// What the threads have spent on quanta, finished or abandoned.
   std::chrono::duration<double> busy() const;
 
  private:
   void work(const std::stop_token& stop);
   void note_failure();
-  void cast(const CastView& view, const RenderTile& quantum, const std::stop_token& stop);
+  void cast(const CastView& view, const RenderTile& quantum,
+            std::unique_ptr<TileRefinement> tile, const std::stop_token& stop);
 
   std::function<void()> notify_;
   mutable std::mutex mutex_;
@@ -60,6 +58,9 @@ class ComputePool {
   std::shared_ptr<const CastView> view_;
   std::deque<RenderTile> queue_;
   std::vector<Done> outbox_;
+  std::optional<Epoch> begun_;  ///< not told yet
+  Epoch last_begun_;
+  TileStore tiles_;  ///< of the view
   std::exception_ptr failure_;
   std::atomic<std::uint32_t> epoch_{0};
   std::atomic<std::int64_t> busy_ns_{0};

@@ -14,6 +14,11 @@
 #include "worker/kernels/visible_cells.h"
 
 namespace goldthread {
+namespace {
+
+constexpr double kCellEdge = 8;  ///< in voxels
+
+}  // namespace
 
 class CommittedScene {
  public:
@@ -54,6 +59,15 @@ class CommittedScene {
   const Volume& volume() const { return *volume_; }
   const std::vector<Light>& lights() const { return lights_; }
   const Shading& shading() const { return shading_; }
+  /// Of each cell, x fastest.
+  std::vector<bool> visible_cells() const {
+    std::vector<bool> visible(distances_.size());
+    std::transform(distances_.begin(), distances_.end(), visible.begin(),
+                   [](std::uint8_t distance) { return distance == kCellIsVisible; });
+    const glm::ivec3 counts = volume_->cell_counts();
+    visible.resize(static_cast<std::size_t>(counts.x) * counts.y * counts.z);  // without padding
+    return visible;
+  }
   /// False where the field has no extent: a volume one voxel thick.
   bool hits_something() const { return hits_something_; }
 
@@ -123,6 +137,28 @@ std::string kernel_name(const CommittedScene& scene) {
     name += (name.empty() ? "" : "+") + feature;
   name += std::string(" ") + name_of(scene.volume().info().type);
   return name + " " + instruction_set();
+}
+
+std::vector<glm::dvec3> visible_points(const CommittedScene& scene, std::size_t most) {
+  const Volume& volume = scene.volume();
+  const auto is_visible = scene.visible_cells();
+  const bool any = std::find(is_visible.begin(), is_visible.end(), true) != is_visible.end();
+  const glm::ivec3 counts = volume.cell_counts();
+  const VolumeGeometry& geometry = volume.info().geometry;
+  const glm::dmat4 world_from_index = geometry.world_from_index();
+  std::vector<glm::dvec3> all;
+  for (std::size_t i = 0; i < is_visible.size(); ++i) {
+    if (any && !is_visible[i]) continue;
+    const int cell = static_cast<int>(i);
+    const glm::dvec3 place(cell % counts.x, cell / counts.x % counts.y,
+                           cell / counts.x / counts.y);
+    const glm::dvec3 last(geometry.size - 1);
+    all.push_back(world_from_index * glm::dvec4(glm::min(kCellEdge * (place + 0.5), last), 1));
+  }
+  std::vector<glm::dvec3> chosen;
+  const std::size_t count = std::min(most, all.size());
+  for (std::size_t i = 0; i < count; ++i) chosen.push_back(all[i * all.size() / count]);
+  return chosen;
 }
 
 std::shared_ptr<const SampleSource> make_ray_caster(std::shared_ptr<const CommittedScene> scene,

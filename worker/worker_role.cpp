@@ -18,10 +18,13 @@ namespace {
 constexpr std::chrono::milliseconds kIdleWait{50};
 constexpr std::chrono::seconds kFarewell{2};
 constexpr std::chrono::milliseconds kLoadingWait{20};
+/// That the master measures a camera's movement by.
+constexpr std::size_t kVisiblePoints = 64;
 
 }  // namespace
 
-WorkerRole::WorkerRole(Transport& transport) : post_(transport) {}
+WorkerRole::WorkerRole(Transport& transport, SourceMaker make_source)
+    : post_(transport), make_source_(std::move(make_source)) {}
 
 void WorkerRole::require(bool good, const char* what) const {
   if (good) return;
@@ -109,26 +112,32 @@ void WorkerRole::on(const CommitScene& message) {
       parse_scene(message.scene_json, "the master's scene", {}, {.allow_internal = true}));
   scene_ = commit_scene(scene, volume_);
   revision_ = message.revision;
-  post_.to_master(SceneCommitted{revision_, feature_names(*scene_), kernel_name(*scene_)});
+  post_.to_master(SceneCommitted{revision_, feature_names(*scene_), kernel_name(*scene_),
+                                 visible_points(*scene_, kVisiblePoints)});
 }
 
 void WorkerRole::on(const BeginView& message) {
   require(pool_ && scene_ && message.grid.valid() && message.scene_revision == revision_,
           "was given a view it cannot cast");
   view_ = message;
-  pool_->begin_view(std::make_shared<const CastView>(CastView{
-      message.epoch, message.grid, make_ray_caster(scene_, message.camera, message.grid.image)}));
+  pool_->begin_view(std::make_shared<const CastView>(
+      CastView{message.epoch,
+               message.grid,
+               message.refinement,
+               {message.background, message.color_space},
+               make_source_(scene_, message.camera, message.grid.image)}));
 }
 
 void WorkerRole::on(const RenderTile& message) {
   if (!view_ || message.epoch != view_->epoch) return;
   require(message.tile.value < view_->grid.count() && is_step(message.from, message.to),
-          "was given a tile or level that its view does not have");
+          "was given a tile or step that its view does not have");
   pool_->push(message);
 }
 
 void WorkerRole::send_done() {
   if (!pool_) return;
+  if (const auto epoch = pool_->take_begun()) post_.to_master(ViewTaken{*epoch});
   for (ComputePool::Done& done : pool_->take_done()) {
     const int band =
         band_index(view_->grid, done.samples.tile, static_cast<int>(session_.compositors));

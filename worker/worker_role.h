@@ -4,6 +4,7 @@
 // the compositor of their band and the cost to the master. Knows neither who asked nor who
 // displays.
 
+#include <functional>
 #include <future>
 #include <memory>
 #include <optional>
@@ -15,9 +16,13 @@
 
 namespace goldthread {
 
+/// What casts the rays of a view of a committed scene.
+using SourceMaker = std::function<std::shared_ptr<const SampleSource>(
+    std::shared_ptr<const CommittedScene> scene, const Camera& camera, ImageSize size)>;
+
 class WorkerRole {
  public:
-  explicit WorkerRole(Transport& transport);
+  explicit WorkerRole(Transport& transport, SourceMaker make_source = make_ray_caster);
   /// Serves until the master says stop. What fails is told to the master, which ends the job. True
   /// if no rank was lost meanwhile.
   bool run();
@@ -43,6 +48,7 @@ class WorkerRole {
   };
 
   Post post_;
+  SourceMaker make_source_;
   HeartbeatSender heartbeat_;
   std::optional<Stop> stop_;
   BeginSession session_;

@@ -7,10 +7,9 @@ namespace goldthread {
 namespace {
 
 constexpr int kLargestImage = 1 << 14;
-constexpr int kCoarsestSpacing = 16;
 constexpr int kBlockEdge = 4;
 
-/// The last offset along an axis of `extent` pixels that a level samples.
+/// The last offset along an axis of `extent` pixels that a grid samples.
 int last_offset(int extent, int spacing) {
   if (spacing == 1) return extent - 1;
   return (extent + spacing - 1) / spacing * spacing;
@@ -39,21 +38,16 @@ TileGrid TileGrid::rows_of(ImageSize image) {
   return {image, {width, kCoarsestSpacing}};
 }
 
-std::vector<SampleOffset> new_samples(ImageSize size, Level from, Level to) {
-  const int spacing = to.spacing_px();
+std::vector<SampleOffset> grid_places(ImageSize size, int spacing) {
   const int last_x = last_offset(size.width, spacing);
   const int last_y = last_offset(size.height, spacing);
-  const bool from_nothing = from == kNoLevel;
-  const int held = from_nothing ? 0 : from.spacing_px() - 1;
   std::vector<SampleOffset> offsets;
   const int block = kBlockEdge * spacing;
   for (int block_y = 0; block_y <= last_y; block_y += block) {
     for (int block_x = 0; block_x <= last_x; block_x += block) {
       for (int y = block_y; y < block_y + block && y <= last_y; y += spacing) {
-        for (int x = block_x; x < block_x + block && x <= last_x; x += spacing) {
-          if (!from_nothing && ((x | y) & held) == 0) continue;
+        for (int x = block_x; x < block_x + block && x <= last_x; x += spacing)
           offsets.push_back({static_cast<std::uint16_t>(x), static_cast<std::uint16_t>(y)});
-        }
       }
     }
   }

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// How the screen is cut: tiles (sample squares, or sample rows), the levels of samples in a tile,
-// and the compositors' bands. Pure geometry that master, workers and compositors agree on.
+// How the screen is cut: tiles (sample squares, or sample rows), regular grids of samples in a
+// tile, and the compositors' bands. Pure geometry that master, workers and compositors agree on.
 
+#include <compare>
 #include <cstdint>
 #include <vector>
 
@@ -11,30 +12,19 @@
 
 namespace goldthread {
 
-/// A level of samples, by the binary logarithm of their spacing in pixels: 4 is one sample in 16×16
-/// pixels, 0 one in each pixel.
-struct Level {
-  std::int8_t log2_spacing = 0;
-  int spacing_px() const { return 1 << log2_spacing; }
-  Level finer() const { return {static_cast<std::int8_t>(log2_spacing - 1)}; }
-  bool operator==(const Level&) const = default;
-  static constexpr auto fields() { return std::tuple{&Level::log2_spacing}; }
-};
-constexpr Level kCoarsestLevel{4};
-constexpr Level kPixelLevel{0};
-/// As a quantum's `from`: the tile holds nothing yet.
-constexpr Level kNoLevel{5};
-/// Whether there are levels that take a tile from `from` to `to`. For bytes of a peer.
-constexpr bool is_step(Level from, Level to) {
-  return kPixelLevel.log2_spacing <= to.log2_spacing && to.log2_spacing < from.log2_spacing &&
-         from.log2_spacing <= kNoLevel.log2_spacing;
+/// The distance of the samples that every tile begins with, in pixels.
+constexpr int kCoarsestSpacing = 16;
+/// Places along an axis of a tile of `extent` pixels: one for each pixel and, at or beyond the far
+/// edge, the replicated ones up to the next multiple of the coarsest spacing.
+constexpr int places_along(int extent) {
+  return (extent + kCoarsestSpacing - 1) / kCoarsestSpacing * kCoarsestSpacing + 1;
 }
 
 /// A sample's place in its tile, in pixels from the tile's first.
 struct SampleOffset {
   std::uint16_t x = 0;
   std::uint16_t y = 0;
-  bool operator==(const SampleOffset&) const = default;
+  auto operator<=>(const SampleOffset&) const = default;
 };
 
 /// The picture cut into tiles of `tile` pixels, from the top left; the last ones may be smaller.
@@ -58,12 +48,10 @@ struct TileGrid {
   static TileGrid rows_of(ImageSize image);
 };
 
-/// The samples that take a tile of `size` pixels from level `from` (kNoLevel: from nothing) to the
-/// finer level `to` (is_step(from, to)), each once, in the one order in which they travel: in
-/// blocks of 4×4, for the sake of coherent packets. Above the pixel level they include the
-/// replicated column and row at or beyond the right and lower edges, so that each tile can be
-/// reconstructed alone.
-std::vector<SampleOffset> new_samples(ImageSize size, Level from, Level to);
+/// The places of a regular grid of samples in a tile of `size` pixels, each once, in blocks of 4×4 for
+/// the sake of coherent packets. Above the pixel (`spacing` > 1) they include the replicated column
+/// and row at or beyond the right and lower edges, so that each tile can be reconstructed alone.
+std::vector<SampleOffset> grid_places(ImageSize size, int spacing);
 
 /// The centre of the pixel that a sample stands for.
 inline PixelPosition position_of(const PixelRect& tile, SampleOffset offset) {

@@ -1,0 +1,63 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "worker/refine_tile.h"
+
+#include <algorithm>
+#include <cstring>
+#include <utility>
+
+namespace goldthread {
+namespace {
+
+TileTask task_of(const CastView& view, TileId tile) {
+  return {view.grid.rect(tile), view.refinement, view.appearance, view.source->has_surfaces()};
+}
+
+/// Colours, then places, packed; each place once, with what the tile holds there now.
+Samples pack(const TileRefinement& tile, const RenderTile& quantum,
+             std::span<const SampleOffset> places) {
+  Samples message{quantum.epoch, quantum.tile, quantum.from, quantum.to,
+                  static_cast<std::uint32_t>(places.size()),
+                  Buffer(places.size() * (sizeof(Sample) + sizeof(SampleOffset)))};
+  std::byte* const colors = message.packed.data();
+  for (std::size_t i = 0; i < places.size(); ++i)
+    std::memcpy(colors + i * sizeof(Sample), &tile.sample(places[i]), sizeof(Sample));
+  if (!places.empty())
+    std::memcpy(colors + places.size() * sizeof(Sample), places.data(),
+                places.size() * sizeof(SampleOffset));
+  return message;
+}
+
+}  // namespace
+
+std::optional<RefinedTile> refine_tile(const CastView& view, const RenderTile& quantum,
+                                       std::unique_ptr<TileRefinement> tile,
+                                       const std::function<bool()>& stale) {
+  RefinedTile result;
+  const auto cast = [&](std::span<const PixelPosition> positions, std::span<Sample> samples,
+                        std::span<std::uint32_t> surfaces) {
+    for (std::size_t first = 0; first < positions.size(); first += kBatchRays) {
+      if (stale()) return false;
+      const std::size_t count = std::min(kBatchRays, positions.size() - first);
+      result.counts += view.source->cast(positions.subspan(first, count),
+                                         samples.subspan(first, count),
+                                         surfaces.subspan(first, count));
+    }
+    return true;
+  };
+  if (!tile || tile->step() != quantum.from)
+    tile = std::make_unique<TileRefinement>(task_of(view, quantum.tile));
+  std::vector<SampleOffset> changed;
+  while (tile->step() < quantum.to) {
+    if (!tile->advance(cast)) return {};
+    if (tile->step() > quantum.from)
+      changed.insert(changed.end(), tile->changed().begin(), tile->changed().end());
+  }
+  std::sort(changed.begin(), changed.end());
+  changed.erase(std::unique(changed.begin(), changed.end()), changed.end());
+  result.samples = pack(*tile, quantum, changed);
+  result.quality = tile->quality();
+  result.tile = std::move(tile);
+  return result;
+}
+
+}  // namespace goldthread

@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+// One quantum of work: a tile taken through steps of refinement, its rays cast in small batches so
+// that it can be abandoned between any two of them.
+
+#include <functional>
+#include <memory>
+#include <optional>
+
+#include "common/protocol/messages.h"
+#include "worker/cast_view.h"
+#include "worker/refinement/tile_refinement.h"
+
+namespace goldthread {
+
+/// Rays between two looks at whether the work is still wanted: some tens of packets, about a
+/// millisecond.
+constexpr std::size_t kBatchRays = 512;
+
+struct RefinedTile {
+  Samples samples;  ///< what the quantum changed, ready to be sent
+  CastCounts counts;
+  TileQuality quality;
+  std::unique_ptr<TileRefinement> tile;  ///< to go on with
+};
+
+/// Takes a tile to quantum.to. `tile` is what this worker holds of it, or null: then, and if it does
+/// not stand at quantum.from, its steps are taken again from the first, with the same results.
+/// Nothing if `stale` became true.
+std::optional<RefinedTile> refine_tile(const CastView& view, const RenderTile& quantum,
+                                       std::unique_ptr<TileRefinement> tile,
+                                       const std::function<bool()>& stale);
+
+}  // namespace goldthread

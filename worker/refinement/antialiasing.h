@@ -1,0 +1,92 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+// Below the pixel: which pixels get samples of their own beyond the one in their centre, and how
+// large the error of all pixels with rays still is. A pixel whose centre bends away from its
+// neighbours has an edge in it, or may have; one whose variance says that it is still worth it gets
+// twice as many samples. How much of its second difference a centre sample is off by is learned
+// from the pixels that have been sampled further.
+
+#include <algorithm>
+#include <optional>
+#include <span>
+#include <unordered_map>
+#include <vector>
+
+#include "worker/refinement/pixel_sums.h"
+#include "worker/refinement/step_plan.h"
+#include "worker/refinement/subdivision.h"
+
+namespace goldthread {
+
+/// More samples for a pixel: those with the numbers [first, last).
+struct PixelOrder {
+  SampleOffset place;
+  std::uint32_t first = 0;
+  std::uint32_t last = 0;
+};
+
+/// A pixel beyond the left or upper edge of a tile: x = −1 or y = −1, not both.
+struct ApronPixel {
+  int x = 0;
+  int y = 0;
+};
+
+/// The pixels just beyond the left and upper edge: second differences at the tile's edge need them.
+class Apron {
+ public:
+  explicit Apron(ImageSize tile)
+      : tile_(tile),
+        left_(static_cast<std::size_t>(tile.height)),
+        above_(static_cast<std::size_t>(tile.width)) {}
+
+  ImageSize tile() const { return tile_; }
+  std::optional<Shown>& at(ApronPixel pixel) {
+    return pixel.x < 0 ? left_[static_cast<std::size_t>(pixel.y)]
+                       : above_[static_cast<std::size_t>(pixel.x)];
+  }
+
+ private:
+  ImageSize tile_;
+  std::vector<std::optional<Shown>> left_;
+  std::vector<std::optional<Shown>> above_;
+};
+
+class Antialiasing {
+ public:
+  explicit Antialiasing(ImageSize tile);
+
+  /// The pixels next to `squares` (of spacing 2) that lie in the apron and are not known yet.
+  std::vector<ApronPixel> wanted_apron(std::span<const Square> squares);
+  void put_apron(ApronPixel pixel, const Shown& shown) { apron_.at(pixel) = shown; }
+
+  /// What the pixels of `squares` (of spacing 2), and those with samples of their own, are to get.
+  /// Centres that are wanted too are part of the order.
+  std::vector<PixelOrder> choose(TilePlane& plane, std::span<const Square> squares,
+                                 const StepPlan& plan, std::uint32_t most);
+  /// The samples of one order, in the order of their numbers, and the surfaces of the first.
+  void add(TilePlane& plane, const PixelOrder& order, std::span<const Sample> samples,
+           std::uint32_t surfaces, const Appearance& appearance);
+  /// All pixels get `count` samples.
+  std::vector<PixelOrder> choose_all(const TilePlane& plane, std::uint32_t count) const;
+
+  /// The sum over the pixels of `squares` (of spacing 2) with one sample, and those with several.
+  double squared_error(TilePlane& plane, std::span<const Square> squares);
+
+  std::span<const PixelSum> sums() const { return sums_; }
+  const PixelSum* find(SampleOffset place) const;
+  std::size_t bytes() const { return sums_.size() * (sizeof(PixelSum) + 4 * sizeof(void*)); }
+
+ private:
+  double bend_of(TilePlane& plane, int x, int y);
+  void learn(const PixelSum& sum);
+  /// The squared share of its bend that a centre is off by, as learned so far.
+  double squared_share() const { return std::max(0.0, learned_) / learned_from_; }
+
+  Apron apron_;
+  std::vector<PixelSum> sums_;
+  std::unordered_map<std::uint32_t, std::size_t> place_of_;  ///< in sums_
+  double learned_;  ///< squared shares, of so many pixels
+  double learned_from_;
+};
+
+}  // namespace goldthread
