@@ -4,30 +4,60 @@
 namespace goldthread {
 namespace {
 
-/// While the view moves, its first picture waits for the finest level that fits the budget: coarser
-/// ones shown in between would flicker.
-bool worth_waiting(const FrameState& state) {
-  return state.moving && !state.shown && !state.finished &&
-         state.elapsed + state.next_level <= kMovingBudget;
+bool at_rest(const FrameState& state) { return state.since_input >= kMovementPause; }
+
+bool is_better(const PictureErrors& one, const PictureErrors& other) {
+  if (one.edits_behind != other.edits_behind) return one.edits_behind < other.edits_behind;
+  return one.total_px() < other.total_px();
 }
 
-FrameAction decide_waiting(const FrameState& state) {
-  // Each view that was begun gets its first level before the next one begins, so that endless input
-  // cannot starve the picture; a view that was shown yields at once.
-  if (!state.better_ready) return state.shown ? FrameAction::kSwitch : FrameAction::kRefine;
-  if (worth_waiting(state)) return FrameAction::kRefine;
-  // A page that is slow never makes the cluster wait: it misses this view.
-  return state.audience_ready ? FrameAction::kShowAndSwitch : FrameAction::kSwitch;
+/// A picture with loss is no improvement on one without.
+bool worth_showing(const FrameState& state) {
+  if (state.final_error) return false;
+  if (!state.front) return true;
+  if (state.shown) return state.back.spatial_px < kWorthShowing * state.front->spatial_px;
+  return is_better(state.back, *state.front);
+}
+
+bool worth_showing_final(const FrameState& state) {
+  if (!at_rest(state) || state.estimated_error > state.target_error) return false;
+  return !state.final_error || state.estimated_error < kWorthShowingFinal * *state.final_error;
+}
+
+/// With input waiting: whether refining the back is pointless, because it is later than coarse. A
+/// movement that has ended makes it so too: what rests on the screen is the view that was asked
+/// for, and the front stays until that one is better.
+bool is_overtaken(const FrameState& state) {
+  return state.back.edits_behind > 0 || state.back.temporal_px >= state.back.spatial_px ||
+         at_rest(state);
+}
+
+/// A display takes the next picture soon: before another view could be as good as this one, which
+/// is worth showing but came too early.
+bool display_is_near(const FrameState& state) {
+  return state.audience_ready && state.back.edits_behind == 0 && worth_showing(state) &&
+         state.since_shown < kShowInterval &&
+         kShowInterval - state.since_shown <= state.since_begun;
 }
 
 }  // namespace
 
 FrameAction decide(const FrameState& state) {
-  if (state.input_waiting) return decide_waiting(state);
-  if (!state.audience_ready || state.final_shown) return FrameAction::kRefine;
-  if (state.finished && !state.moving && !state.final_shown) return FrameAction::kShowFinal;
-  if (state.better_ready && !worth_waiting(state)) return FrameAction::kShow;
-  return FrameAction::kRefine;
+  // Each view that was begun gets its first picture before the next one begins, so that endless
+  // input cannot starve the pages.
+  if (!state.has_picture) return FrameAction::kRefine;
+  // A page that is slow never makes the cluster wait: it misses this picture.
+  const bool can_show = state.audience_ready && state.since_shown >= kShowInterval;
+  if (state.input_waiting && is_overtaken(state)) {
+    if (display_is_near(state)) return FrameAction::kRefine;
+    return can_show && worth_showing(state) ? FrameAction::kShowAndSwitch : FrameAction::kSwitch;
+  }
+  if (can_show && !state.input_waiting && worth_showing_final(state)) {
+    return FrameAction::kShowFinal;
+  }
+  if (can_show && worth_showing(state)) return FrameAction::kShow;
+  const bool settled = state.final_error && !state.input_waiting && at_rest(state);
+  return settled && state.cine_wanted ? FrameAction::kCine : FrameAction::kRefine;
 }
 
 }  // namespace goldthread

@@ -1,38 +1,59 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// When a picture is shown and when a newer view takes over. Pure: values in, a decision out. Later
-// the temporal error of a moving view decides; now a time budget does: while input is waiting a
-// view is refined only as far as the budget allows, and shown once.
+// When a picture is shown and when a newer view takes over: "Interruptible rendering" (Woolley,
+// Luebke, Watson & Dayal 2003). A view is refined until it is later than it is coarse. Pure:
+// values in, a decision out; asked again every millisecond.
+//
+// The front is what the pages show, the back is the view that is being refined. Once the back is
+// shown it is the front as well and is refined in place, which makes one and a half buffers.
 
 #include <chrono>
 #include <cstdint>
+#include <optional>
 
 namespace goldthread {
 
+/// What is wrong with a picture, against the newest input.
+struct PictureErrors {
+  int edits_behind = 0;    ///< changes of scene or size that it does not show yet
+  double spatial_px = 0;   ///< how coarse it is: spatial_error_px()
+  double temporal_px = 0;  ///< how late its camera is: temporal_error_px()
+  double total_px() const { return spatial_px + temporal_px; }
+};
+
 struct FrameState {
-  bool input_waiting = false;   ///< a newer camera, scene or size than the one being cast
-  bool moving = false;          ///< there was input just now, more is likely
-  bool audience_ready = false;  ///< a page could take a picture at once
-  bool better_ready = false;    ///< the compositors hold a whole level that is not shown yet
-  bool shown = false;           ///< some level of this view has been shown
-  bool finished = false;        ///< the last level is complete
-  bool final_shown = false;     ///< and has been shown without loss
-  std::chrono::microseconds elapsed{0};     ///< since the view began
-  std::chrono::microseconds next_level{0};  ///< predicted time for the next level
+  bool input_waiting = false;          ///< a newer camera, scene or size than the back's
+  bool audience_ready = false;         ///< a page could take a picture at once
+  bool cine_wanted = false;            ///< the pages want a cine loop that is not rendered yet
+  bool has_picture = false;            ///< the back has taken its first step everywhere
+  bool shown = false;                  ///< the front is the back, as coarse as it was then
+  std::optional<PictureErrors> front;  ///< nothing before the first picture of a session
+  PictureErrors back;
+  double estimated_error = 0;         ///< of the back's colours, RMS in 1/255
+  double target_error = 0;            ///< what is good enough to be shown without loss
+  std::optional<double> final_error;  ///< estimated_error when the back was shown without loss
+  std::chrono::microseconds since_begun{0};  ///< that the back is refined
+  std::chrono::microseconds since_input{0};
+  std::chrono::microseconds since_shown{0};
 };
 
 enum class FrameAction : std::uint8_t {
-  kRefine,         ///< go on with this view
-  kShow,           ///< show what is complete, and go on
-  kShowFinal,      ///< show the finished picture without loss
-  kShowAndSwitch,  ///< show what is complete, then begin the newest view
-  kSwitch          ///< begin the newest view at once
+  kRefine,         ///< go on with the back
+  kShow,           ///< show the back, and go on with it
+  kShowFinal,      ///< show it without loss, and go on with it
+  kShowAndSwitch,  ///< show the back, then begin the newest view
+  kSwitch,         ///< begin the newest view at once
+  kCine            ///< the picture is as it should be: begin the cine loop
 };
 
-/// A view that moves gets this long before its first picture is shown and the next one begins.
-constexpr std::chrono::microseconds kMovingBudget{33000};
-/// Input counts as a movement for this long.
-constexpr std::chrono::microseconds kMovementPause{150000};
+/// More pictures than a display shows would be lost.
+constexpr std::chrono::microseconds kShowInterval{1'000'000 / 60};
+/// Input counts as a movement for this long: then more of it is likely.
+constexpr std::chrono::microseconds kMovementPause{150'000};
+/// A view that is refined is shown again when its error has fallen to this share.
+constexpr double kWorthShowing = 0.7071067811865476;
+/// And without loss, to this one.
+constexpr double kWorthShowingFinal = 0.5;
 
 FrameAction decide(const FrameState& state);
 

@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-#include <algorithm>
+#include <functional>
 #include <vector>
 
 namespace goldthread {
@@ -12,208 +12,210 @@ namespace {
 using namespace std::chrono_literals;
 using Action = FrameAction;
 
+bool shows(Action action) {
+  return action == Action::kShow || action == Action::kShowFinal ||
+         action == Action::kShowAndSwitch;
+}
+bool switches(Action action) {
+  return action == Action::kSwitch || action == Action::kShowAndSwitch;
+}
+
 struct Rule {
   const char* says;
   FrameState state;
-  FrameAction action;
+  Action action;
 };
 
 void expect_rules(const std::vector<Rule>& rules) {
   for (const Rule& rule : rules) EXPECT_EQ(decide(rule.state), rule.action) << rule.says;
 }
 
-TEST(FramePolicy, AtRestShowsEachLevelAndTheLastWithoutLossOnce) {
+/// A view in progress while the camera moves: a page is there, and the last picture long ago.
+FrameState moving(PictureErrors front, PictureErrors back) {
+  FrameState state;
+  state.input_waiting = state.audience_ready = state.has_picture = true;
+  state.front = front;
+  state.back = back;
+  state.target_error = 1;
+  state.estimated_error = 5;
+  state.since_input = 1ms;
+  state.since_shown = 1s;
+  return state;
+}
+FrameState with(FrameState state, const std::function<void(FrameState&)>& change) {
+  change(state);
+  return state;
+}
+/// A view that was shown with errors `front_px` and has been refined to `back_px` since.
+FrameState resting(double front_px, double back_px, double estimated_error) {
+  FrameState state = moving({0, front_px, 0}, {0, back_px, 0});
+  state.input_waiting = false;
+  state.shown = true;
+  state.since_input = 1s;
+  state.estimated_error = estimated_error;
+  return state;
+}
+
+TEST(FramePolicy, AViewIsRefinedUntilItIsLaterThanCoarse) {
+  const PictureErrors old{0, 1, 9};
   expect_rules({
-      {"nothing new", {.audience_ready = true}, Action::kRefine},
-      {"a level", {.audience_ready = true, .better_ready = true}, Action::kShow},
-      {"a level, nobody can take it", {.better_ready = true}, Action::kRefine},
-      {"the last level",
-       {.audience_ready = true, .better_ready = true, .finished = true},
-       Action::kShowFinal},
-      {"the last level, shown with loss while moving",
-       {.audience_ready = true, .shown = true, .finished = true},
-       Action::kShowFinal},
-      {"nobody can take it", {.shown = true, .finished = true}, Action::kRefine},
-      {"shown without loss",
-       {.audience_ready = true, .shown = true, .finished = true, .final_shown = true},
-       Action::kRefine},
-      {"nothing follows the last picture",
-       {.audience_ready = true,
-        .better_ready = true,
-        .shown = true,
-        .finished = true,
-        .final_shown = true},
-       Action::kRefine},
+      {"coarser than late, and better than the front", moving(old, {0, 3, 2}), Action::kShow},
+      {"coarser than late, and worse", moving(old, {0, 9, 2}), Action::kRefine},
+      {"later than coarse, and better", moving(old, {0, 3, 3}), Action::kShowAndSwitch},
+      {"later than coarse, and worse: the camera came back", moving({0, 1, 0}, {0, 2, 3}),
+       Action::kSwitch},
+      {"nothing was ever shown", with(moving(old, {0, 50, 2}), [](auto& s) { s.front.reset(); }),
+       Action::kShow},
+      {"the movement has ended, late as it is by less",
+       with(moving(old, {0, 3, 2}), [](auto& s) { s.since_input = kMovementPause; }),
+       Action::kShowAndSwitch},
+      {"the same, and the front is better",
+       with(moving({0, 1, 1}, {0, 3, 2}), [](auto& s) { s.since_input = kMovementPause; }),
+       Action::kSwitch},
   });
 }
 
-TEST(FramePolicy, WhileMovingWaitsForTheLevelThatFitsTheBudget) {
-  const FrameState moving{.moving = true, .audience_ready = true, .better_ready = true};
-  FrameState fits = moving, late = moving, shown = moving, finished = moving;
-  fits.elapsed = 10ms, fits.next_level = 23ms;
-  late.elapsed = 10ms, late.next_level = 24ms;
-  shown = fits, shown.shown = true;
-  finished = fits, finished.finished = true;
-  expect_rules({{"fits", fits, Action::kRefine},
-                {"does not fit", late, Action::kShow},
-                {"has its first picture", shown, Action::kShow},
-                {"is finished, but not at rest", finished, Action::kShow}});
-}
-
-TEST(FramePolicy, WithInputWaitingYieldsAsSoonAsItsPictureIsOut) {
-  const FrameState waiting{.input_waiting = true, .moving = true, .audience_ready = true};
-  FrameState first = waiting, fits = waiting, slow = waiting, shown = waiting, again = waiting;
-  first.better_ready = true, first.elapsed = 40ms;
-  fits.better_ready = true, fits.elapsed = 1ms, fits.next_level = 1ms;
-  slow = first, slow.audience_ready = false;
-  shown.shown = true;
-  again = first, again.shown = true;
-  expect_rules({{"its first level is not complete", waiting, Action::kRefine},
-                {"its first level is", first, Action::kShowAndSwitch},
-                {"the next level fits the budget", fits, Action::kRefine},
-                {"no page can take it", slow, Action::kSwitch},
-                {"nothing new to show", shown, Action::kSwitch},
-                {"a finer level than was shown", again, Action::kShowAndSwitch}});
-}
-
-/// A session on a clock that is counted: a cluster that completes a level every `level_time`, a
-/// page that can take a picture `page_time` after the one before.
-class Session {
- public:
-  std::chrono::microseconds level_time{5000};
-  std::chrono::microseconds page_time{1000};
-  static constexpr int kLevels = 5;
-
-  struct Shown {
-    std::chrono::microseconds at;
-    int view;
-    int level;
-    bool final;
+TEST(FramePolicy, AViewThatWasShownIsShownAgainWhenItsErrorHasFallenEnough) {
+  const auto shown = [](double now) {
+    return with(moving({0, 2, 0.5}, {0, now, 0.5}), [](auto& s) { s.shown = true; });
   };
-  std::vector<Shown> shown;
-  int views = 1;
-  std::chrono::microseconds longest_view{0};
+  expect_rules({{"not enough", shown(1.42), Action::kRefine},
+                {"enough", shown(1.41), Action::kShow},
+                {"overtaken, enough",
+                 with(shown(1.41), [](auto& s) { s.front->temporal_px = s.back.temporal_px = 2; }),
+                 Action::kShowAndSwitch},
+                {"overtaken, not enough",
+                 with(shown(1.42), [](auto& s) { s.front->temporal_px = s.back.temporal_px = 2; }),
+                 Action::kSwitch}});
+}
 
-  void input() {
-    waiting_ = true;
-    last_input_ = now_;
-  }
-  void run(std::chrono::microseconds time, std::chrono::microseconds input_every = 0us) {
-    for (const auto end = now_ + time; now_ < end; now_ += kStep) {
-      if (input_every > 0us && now_ % input_every == 0us) input();
-      step();
+TEST(FramePolicy, AnOvertakenViewWaitsForADisplayThatIsNearerThanAnotherView) {
+  const auto early = [](std::chrono::microseconds begun, std::chrono::microseconds shown) {
+    return with(moving({0, 1, 9}, {0, 3, 3}), [&](auto& s) {
+      s.since_begun = begun;
+      s.since_shown = shown;
+    });
+  };
+  expect_rules({
+      {"near", early(10ms, 7ms), Action::kRefine},
+      {"far: a newer view is as good by then", early(9ms, 7ms), Action::kSwitch},
+      {"there", early(9ms, 17ms), Action::kShowAndSwitch},
+      {"near, but nobody waits", with(early(10ms, 7ms), [](auto& s) { s.audience_ready = false; }),
+       Action::kSwitch},
+      {"near, but the front is better",
+       with(early(10ms, 7ms), [](auto& s) { s.front->temporal_px = 1; }), Action::kSwitch},
+      {"near, but behind an edit", with(early(10ms, 7ms), [](auto& s) { s.back.edits_behind = 1; }),
+       Action::kSwitch},
+  });
+}
+
+TEST(FramePolicy, AnEditOvertakesEveryViewThatDoesNotShowIt) {
+  expect_rules({
+      {"both behind, the back by less", moving({2, 0.1, 0}, {1, 8, 0}), Action::kShowAndSwitch},
+      {"both behind alike, the back coarser", moving({1, 0.1, 0}, {1, 8, 0}), Action::kSwitch},
+      {"only the front", moving({1, 0.1, 0}, {0, 8, 0}), Action::kShow},
+      {"no first picture yet",
+       with(moving({1, 1, 0}, {1, 8, 0}), [](auto& s) { s.has_picture = false; }), Action::kRefine},
+  });
+}
+
+TEST(FramePolicy, AtRestShowsWithoutLossOnceItIsGoodEnoughAndThenAtEachHalf) {
+  const auto after_final = [](double now) {
+    return with(resting(0.1, now / 10, now), [](auto& s) { s.final_error = 1; });
+  };
+  expect_rules({
+      {"not good enough", resting(2, 1.9, 1.1), Action::kRefine},
+      {"not good enough, but better", resting(2, 1, 1.1), Action::kShow},
+      {"good enough", resting(2, 1.9, 1), Action::kShowFinal},
+      {"good enough, and not shown at all for a front that is hardly worse",
+       with(resting(0.01, 1, 1), [](auto& s) { s.shown = false; }), Action::kShowFinal},
+      {"moving", with(resting(2, 1.9, 1), [](auto& s) { s.since_input = 149ms; }), Action::kRefine},
+      {"more than half", after_final(0.5), Action::kRefine},
+      {"less than half", after_final(0.49), Action::kShowFinal},
+      {"without any error", with(resting(0, 0, 0), [](auto& s) { s.final_error = 0; }),
+       Action::kRefine},
+      {"a little later than coarse, shown without loss",
+       with(after_final(0.3), [](auto& s) { s.input_waiting = true, s.back.temporal_px = 1; }),
+       Action::kSwitch},
+  });
+}
+
+TEST(FramePolicy, TheCineLoopBeginsWhenThePictureWasShownWithoutLoss) {
+  const FrameState wanted = with(resting(0.1, 0.1, 1), [](auto& s) { s.cine_wanted = true; });
+  const FrameState final = with(wanted, [](auto& s) { s.final_error = 1; });
+  expect_rules({
+      {"the picture comes first", wanted, Action::kShowFinal},
+      {"then the loop", final, Action::kCine},
+      {"not wanted", with(final, [](auto& s) { s.cine_wanted = false; }), Action::kRefine},
+      {"input", with(final, [](auto& s) { s.input_waiting = true; }), Action::kSwitch},
+      {"moving", with(final, [](auto& s) { s.since_input = 1ms; }), Action::kRefine},
+      {"a better picture comes first too", with(final, [](auto& s) { s.estimated_error = 0.4; }),
+       Action::kShowFinal},
+  });
+}
+
+/// Calls check(state) for every combination of flags and of numbers around each threshold.
+void for_all_states(const std::function<void(const FrameState&)>& check) {
+  const double errors[] = {0, 0.5, 1, 4};
+  for (unsigned bits = 0; bits < 1u << 11; ++bits) {
+    const auto bit = [bits](int i) { return (bits >> i & 1) != 0; };
+    for (const double back_s : errors) {
+      for (const double back_t : errors) {
+        for (const double front : errors) {
+          FrameState state;
+          state.input_waiting = bit(0);
+          state.audience_ready = bit(1);
+          state.cine_wanted = bit(2);
+          state.has_picture = bit(3);
+          state.shown = bit(4);
+          state.back = {bit(5) ? 1 : 0, back_s, back_t};
+          if (bit(6) || bit(4)) state.front = {bit(7) ? 1 : 0, front, 1};
+          if (bit(8)) state.final_error = 1;
+          state.since_input = bit(9) ? 150ms : 149ms;
+          state.since_shown = bit(9) == bit(7) ? 17ms : 16ms;
+          state.since_begun = bit(10) ? 10ms : 0ms;
+          state.estimated_error = back_t;
+          state.target_error = 1;
+          check(state);
+        }
+      }
     }
-  }
-
- private:
-  static constexpr std::chrono::microseconds kStep{500};
-
-  void step() {
-    const auto complete = std::min<long>(kLevels, (now_ - begin_) / level_time);
-    if (complete > levels_) {
-      levels_ = static_cast<int>(complete);
-      state_.better_ready = true;
-    }
-    state_.input_waiting = waiting_;
-    state_.moving = now_ - last_input_ < kMovementPause;
-    state_.audience_ready = now_ >= page_ready_;
-    state_.finished = levels_ == kLevels;
-    state_.elapsed = now_ - begin_;
-    state_.next_level = level_time;
-    switch (decide(state_)) {
-      case Action::kRefine:
-        return;
-      case Action::kShow:
-        return show(false);
-      case Action::kShowFinal:
-        return show(true);
-      case Action::kShowAndSwitch:
-        show(false);
-        return begin();
-      case Action::kSwitch:
-        return begin();
-    }
-  }
-  void show(bool final) {
-    shown.push_back({now_, views, levels_, final});
-    state_.better_ready = false;
-    state_.shown = true;
-    state_.final_shown = final;
-    page_ready_ = now_ + page_time;
-  }
-  void begin() {
-    longest_view = std::max(longest_view, now_ - begin_);
-    begin_ = now_;
-    levels_ = 0;
-    state_ = {};
-    waiting_ = false;
-    ++views;
-  }
-
-  std::chrono::microseconds now_{0}, begin_{0}, page_ready_{0};
-  std::chrono::microseconds last_input_ = -kMovementPause;
-  bool waiting_ = false;
-  int levels_ = 0;
-  FrameState state_;
-};
-
-void expect_nothing_shown_twice(const Session& session) {
-  for (std::size_t i = 1; i < session.shown.size(); ++i) {
-    const auto& before = session.shown[i - 1];
-    const auto& after = session.shown[i];
-    const bool newer =
-        after.view > before.view || after.level > before.level || (after.final && !before.final);
-    EXPECT_TRUE(newer) << "view " << after.view << " level " << after.level;
-    EXPECT_FALSE(before.final && after.view == before.view);
   }
 }
 
-TEST(FramePolicy, EndlessInputNeverStarvesThePicture) {
-  for (const auto level_time : {1ms, 5ms, 20ms, 50ms, 200ms}) {
-    SCOPED_TRACE(level_time.count());
-    Session session;
-    session.level_time = level_time;
-    session.run(10s, 1ms);
-    // Each view gets its first level or the budget, whichever is longer, and one picture.
-    const auto frame = std::max<std::chrono::microseconds>(level_time, kMovingBudget) + 2ms;
-    EXPECT_GE(session.shown.size(), static_cast<std::size_t>(10s / frame) - 1);
-    EXPECT_LE(session.longest_view, frame);
-    expect_nothing_shown_twice(session);
-  }
-}
-
-TEST(FramePolicy, ASlowAudienceNeverMakesTheClusterWait) {
-  Session fast, slow, absent;
-  slow.page_time = 300ms;
-  absent.page_time = 1h;
-  for (Session* session : {&fast, &slow, &absent}) {
-    session->run(10s, 1ms);
-    expect_nothing_shown_twice(*session);
-  }
-  EXPECT_GE(slow.views, fast.views);
-  EXPECT_GE(absent.views, fast.views);
-  EXPECT_EQ(absent.shown.size(), 1u);
-  EXPECT_GE(slow.shown.size(), 10s / 340ms - 1u) << "and the page gets all that it can take";
-}
-
-TEST(FramePolicy, TheFinalPictureIsShownWithoutLossOnceAfterRest) {
-  for (const auto level_time : {1ms, 5ms, 50ms}) {
-    for (const auto page_time : {1ms, 100ms}) {
-      Session session;
-      session.level_time = level_time;
-      session.page_time = page_time;
-      session.run(500ms, 4ms);
-      session.run(2s);
-      expect_nothing_shown_twice(session);
-      ASSERT_FALSE(session.shown.empty());
-      EXPECT_TRUE(session.shown.back().final);
-      EXPECT_EQ(session.shown.back().level, Session::kLevels);
-      EXPECT_EQ(session.shown.back().view, session.views) << "of the newest input";
-      EXPECT_EQ(std::count_if(session.shown.begin(), session.shown.end(),
-                              [](const auto& picture) { return picture.final; }),
-                1);
+TEST(FramePolicy, WhateverTheStateItsPromisesHold) {
+  for_all_states([](const FrameState& s) {
+    const Action action = decide(s);
+    const bool rest = s.since_input >= kMovementPause;
+    if (!s.has_picture) {
+      EXPECT_EQ(action, Action::kRefine) << "a view gets its first picture";
     }
-  }
+    if (shows(action)) {
+      EXPECT_TRUE(s.audience_ready) << "somebody sees it";
+      EXPECT_GE(s.since_shown, kShowInterval) << "and has seen the one before";
+    }
+    if (switches(action)) {
+      EXPECT_TRUE(s.input_waiting) << "to something newer";
+    }
+    const bool overtaken = s.back.temporal_px >= s.back.spatial_px || rest;
+    if (s.input_waiting && s.has_picture && overtaken && !switches(action)) {
+      EXPECT_TRUE(s.audience_ready && s.since_shown < kShowInterval &&
+                  s.since_shown + s.since_begun >= kShowInterval)
+          << "it waits for the display, and not for long";
+    }
+    if (action == Action::kShowFinal) {
+      EXPECT_TRUE(rest && !s.input_waiting && s.estimated_error <= s.target_error);
+    }
+    if (action == Action::kCine) {
+      EXPECT_TRUE(rest && !s.input_waiting && s.final_error && s.cine_wanted);
+    }
+    if ((action == Action::kShow || action == Action::kShowAndSwitch) && s.front && !s.shown) {
+      EXPECT_LE(s.back.edits_behind, s.front->edits_behind);
+      EXPECT_TRUE(s.back.edits_behind < s.front->edits_behind ||
+                  s.back.total_px() < s.front->total_px())
+          << "what is shown is better than what was";
+    }
+  });
 }
 
 }  // namespace
