@@ -149,7 +149,7 @@ class CubicFill {
 
 void fill_holes(const TilePlane& plane, Filter filter) {
   if (!plane.known[0] || !std::memchr(plane.known.data(), 0, plane.known.size())) return;
-  for (int spacing = kCoarsestLevel.spacing_px(); spacing > 1; spacing /= 2) {
+  for (int spacing = kCoarsestSpacing; spacing > 1; spacing /= 2) {
     if (filter == Filter::kBicubic) {
       CubicFill(plane, spacing).run();
     } else if (filter == Filter::kBox) {
