@@ -106,14 +106,17 @@ class RayCaster final : public SampleSource {
                                     scene_->volume().info().geometry);
   }
 
-  CastCounts cast(std::span<const PixelPosition> positions,
-                  std::span<Sample> samples) const override {
+  CastCounts cast(std::span<const PixelPosition> positions, std::span<Sample> samples,
+                  std::span<std::uint32_t> surfaces) const override {
+    std::ranges::fill(surfaces, 0U);
     if (!scene_->hits_something()) {
       std::fill_n(samples.begin(), positions.size(), Sample{});
       return {.rays = positions.size()};
     }
-    return scene_->kernel().cast({scene_->terms(), view_, positions, samples});
+    return scene_->kernel().cast({scene_->terms(), view_, positions, samples, surfaces});
   }
+
+  bool has_surfaces() const override { return scene_->features().isosurfaces; }
 
  private:
   std::shared_ptr<const CommittedScene> scene_;

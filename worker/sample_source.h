@@ -25,9 +25,17 @@ class SampleSource {
  public:
   virtual ~SampleSource() = default;
   /// One ray through each position; samples[i] belongs to positions[i] and depends on it alone:
-  /// not on its neighbours in the span, their order, or the calling thread.
-  virtual CastCounts cast(std::span<const PixelPosition> positions,
-                          std::span<Sample> samples) const = 0;
+  /// not on its neighbours in the span, their order, or the calling thread. `surfaces` is empty, or
+  /// as long as positions: then surfaces[i] tells sequences of isosurfaces apart that rays met
+  /// before they ended. Rays that met the same ones in the same order have the same number, 0 if
+  /// there were none; others may share one by chance, if they met very many.
+  virtual CastCounts cast(std::span<const PixelPosition> positions, std::span<Sample> samples,
+                          std::span<std::uint32_t> surfaces) const = 0;
+  CastCounts cast(std::span<const PixelPosition> positions, std::span<Sample> samples) const {
+    return cast(positions, samples, {});
+  }
+  /// Whether a ray can meet an isosurface; if not, all `surfaces` are 0.
+  virtual bool has_surfaces() const { return false; }
 };
 
 }  // namespace goldthread

@@ -15,8 +15,8 @@ namespace goldthread {
 /// Each sample is its own position; counts batches and rays.
 class CountingSource : public SampleSource {
  public:
-  CastCounts cast(std::span<const PixelPosition> positions,
-                  std::span<Sample> samples) const override {
+  CastCounts cast(std::span<const PixelPosition> positions, std::span<Sample> samples,
+                  std::span<std::uint32_t>) const override {
     ++batches;
     for (std::size_t i = 0; i < positions.size(); ++i) {
       samples[i] = {positions[i].x, positions[i].y, 0, 1};
@@ -29,14 +29,14 @@ class CountingSource : public SampleSource {
 /// Stops in each batch until the test lets it go on.
 class HeldSource final : public CountingSource {
  public:
-  CastCounts cast(std::span<const PixelPosition> positions,
-                  std::span<Sample> samples) const override {
+  CastCounts cast(std::span<const PixelPosition> positions, std::span<Sample> samples,
+                  std::span<std::uint32_t> surfaces) const override {
     std::unique_lock lock(mutex_);
     ++entered_;
     changed_.notify_all();
     changed_.wait(lock, [&] { return allowed_ > 0; });
     --allowed_;
-    return CountingSource::cast(positions, samples);
+    return CountingSource::cast(positions, samples, surfaces);
   }
   /// Returns once `count` batches have been begun since the start.
   void wait_until_entered(int count) const {
@@ -58,7 +58,8 @@ class HeldSource final : public CountingSource {
 
 class FailingSource final : public SampleSource {
  public:
-  CastCounts cast(std::span<const PixelPosition>, std::span<Sample>) const override {
+  CastCounts cast(std::span<const PixelPosition>, std::span<Sample>,
+                  std::span<std::uint32_t>) const override {
     throw std::runtime_error("the ray caster fell over");
   }
 };

@@ -27,6 +27,13 @@ HWY_INLINE void write_samples(const Floats3& color, Floats alpha, Sample* sample
     samples[i] = {lanes[0][i], lanes[1][i], lanes[2][i], lanes[3][i]};
 }
 
+/// Writes `count` numbers of SampleSource::cast from lanes.
+HWY_INLINE void write_surfaces(Unsigneds met, std::uint32_t* surfaces, std::size_t count) {
+  HWY_ALIGN std::uint32_t lanes[kLanes];
+  hn::Store(met, kUnsigned, lanes);
+  std::copy_n(lanes, count, surfaces);
+}
+
 template <Storage kStorage, Features kFeatures>
 HWY_NOINLINE CastCounts cast(const CastArguments& arguments) {
   CastCounts counts;
@@ -51,6 +58,8 @@ HWY_NOINLINE CastCounts cast(const CastArguments& arguments) {
       SurfaceMarch<kStorage, kFeatures.dvr, kFeatures.shading> packet(arguments, rays, fine);
       counts.samples += packet.run();
       write_samples(packet.sum().color(), packet.sum().alpha(), samples, count);
+      if (!arguments.surfaces.empty())
+        write_surfaces(packet.met(), arguments.surfaces.data() + i, count);
     } else {
       RayMarch<kStorage, kFeatures.shading> packet(arguments, rays);
       counts.samples += packet.run();

@@ -117,7 +117,8 @@ struct CastArguments {
   const KernelScene& scene;
   const KernelView& view;
   std::span<const PixelPosition> positions;
-  std::span<Sample> samples;  ///< as many as positions
+  std::span<Sample> samples;          ///< as many as positions
+  std::span<std::uint32_t> surfaces;  ///< as many, filled with 0; or none: not wanted
 };
 
 /// A ray ends where less than this share of what lies behind could still be seen. What it has met

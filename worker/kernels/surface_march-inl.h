@@ -50,6 +50,9 @@ class SurfaceMarch {
   }
 
   HWY_INLINE const Accumulation& sum() const { return sum_; }
+  /// The surfaces that each ray met, in their order, as a number in a system whose digits are 1 …
+  /// number of surfaces: no two sequences share one before 32 bits overflow.
+  HWY_INLINE Unsigneds met() const { return met_; }
 
  private:
   static HWY_INLINE Floats inverse(Floats direction) {
@@ -227,6 +230,7 @@ class SurfaceMarch {
         const Floats3 fraction{hn::MulAdd(s, chord.x, entry.x), hn::MulAdd(s, chord.y, entry.y),
                                hn::MulAdd(s, chord.z, entry.z)};
         add_surface(hit, fraction, rising, up, down);
+        remember(hit, rising, std::uint32_t(i), std::uint32_t(count));
       }
       value = next;
     }
@@ -277,6 +281,16 @@ class SurfaceMarch {
     sum_.add(color, hn::IfThenElseZero(hit, chosen(up.opacity, down.opacity)));
   }
 
+  /// Surface number `up` of `count` where the field rises, number `up` from the end where it falls.
+  HWY_INLINE void remember(FloatMask hit, FloatMask rising, std::uint32_t up, std::uint32_t count) {
+    const Unsigneds digit =
+        hn::IfThenElse(hn::RebindMask(kUnsigned, rising), hn::Set(kUnsigned, up + 1),
+                       hn::Set(kUnsigned, count - up));
+    // The base is odd, so that what overflows leaves its mark below.
+    const Unsigneds more = hn::Add(hn::Mul(met_, hn::Set(kUnsigned, count | 3U)), digit);
+    met_ = hn::IfThenElse(hn::RebindMask(kUnsigned, hit), more, met_);
+  }
+
   using FieldType = Field<kStorage, kShading>;
 
   const KernelScene& scene_;
@@ -296,6 +310,7 @@ class SurfaceMarch {
   Floats value_ = hn::Zero(kFloats);        ///< of the field at at_
   FloatMask value_is_stale_ = hn::Ge(hn::Zero(kFloats), hn::Zero(kFloats));
   Accumulation sum_;
+  Unsigneds met_ = hn::Zero(kUnsigned);
   std::uint64_t samples_ = 0;
 };
 

@@ -25,6 +25,7 @@ using IntTag = hn::RebindToSigned<FloatTag>;
 using UnsignedTag = hn::RebindToUnsigned<FloatTag>;
 using Floats = hn::Vec<FloatTag>;
 using Ints = hn::Vec<IntTag>;
+using Unsigneds = hn::Vec<UnsignedTag>;
 using FloatMask = hn::Mask<FloatTag>;
 
 constexpr FloatTag kFloats{};

@@ -16,8 +16,8 @@ namespace {
 /// Tells of each position where it is.
 class PositionSource final : public SampleSource {
  public:
-  CastCounts cast(std::span<const PixelPosition> positions,
-                  std::span<Sample> samples) const override {
+  CastCounts cast(std::span<const PixelPosition> positions, std::span<Sample> samples,
+                  std::span<std::uint32_t>) const override {
     for (std::size_t i = 0; i < positions.size(); ++i)
       samples[i] = {positions[i].x / 1000, positions[i].y / 1000, 0, 1};
     return {positions.size(), 2 * positions.size()};

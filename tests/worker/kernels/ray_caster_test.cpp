@@ -82,23 +82,30 @@ TEST_P(OnEveryInstructionSet, GivesEachRayTheSameBitsInAnyCompany) {
     const auto source =
         make_ray_caster(commit_scene(scene, volume), *scene.camera, scene.image.size);
     Picture whole(positions.size());
-    source->cast(positions, whole);
+    std::vector<std::uint32_t> whole_met(positions.size());
+    source->cast(positions, whole, whole_met);
     std::vector<std::size_t> order(positions.size());
     std::iota(order.begin(), order.end(), std::size_t(0));
     std::shuffle(order.begin(), order.end(), std::mt19937(7));
     // Shuffled, and in pieces of every length from 1 to 23.
     Picture pieces(positions.size());
+    std::vector<std::uint32_t> pieces_met(positions.size());
     std::size_t length = 1;
     for (std::size_t begin = 0; begin < order.size(); length = length % 23 + 1) {
       const std::size_t count = std::min(length, order.size() - begin);
       std::vector<PixelPosition> some;
       for (std::size_t i = 0; i < count; ++i) some.push_back(positions[order[begin + i]]);
       Picture samples(count);
-      source->cast(some, samples);
-      for (std::size_t i = 0; i < count; ++i) pieces[order[begin + i]] = samples[i];
+      std::vector<std::uint32_t> met(count, 7);
+      source->cast(some, samples, met);
+      for (std::size_t i = 0; i < count; ++i) {
+        pieces[order[begin + i]] = samples[i];
+        pieces_met[order[begin + i]] = met[i];
+      }
       begin += count;
     }
     EXPECT_TRUE(same_bits(whole, pieces)) << name;
+    EXPECT_EQ(whole_met, pieces_met) << name;
   }
 }
 
