@@ -38,8 +38,8 @@ class CompositorRole {
   void on(const Stop& message);
   void place(const Samples& message);
   void keep_early(Samples message);
-  /// The band in a picture of `size`, float RGBA, and where it lies there.
-  std::vector<float> picture(Filter filter, ImageSize size, PixelRect& rect) const;
+  /// The band's rows `rect` of a picture of `size`, float RGBA.
+  std::vector<float> picture(Filter filter, ImageSize size, PixelRect rect) const;
   void forward_input();
 
   Post post_;
