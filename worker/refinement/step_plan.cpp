@@ -30,7 +30,7 @@ StepPlan plan_of(Step step) {
   plan.edge = static_cast<float>(kEdge * threshold);
   plan.worth = kWorth * kWorth * threshold * threshold;
   plan.probes = probes_at(round);
-  plan.even_samples = round == 0 ? 1 : 1 + (4U << std::min(round - 1, 18));
+  plan.even_samples = even_samples(step);
   return plan;
 }
 
