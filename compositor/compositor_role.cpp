@@ -64,6 +64,7 @@ void CompositorRole::on(const BeginView& message) {
   view_ = message;
   samples_.emplace(view_->grid, band);
   told_step_ = kNoStep;
+  tell_step();  // of a band without tiles, which nothing else will
   if (early_.empty() || early_.front().epoch > view_->epoch) return;
   for (const Samples& early : std::exchange(early_, {})) {
     if (early.epoch == view_->epoch) place(early);
@@ -91,6 +92,10 @@ void CompositorRole::place(const Samples& message) {
                       "start the same build of goldthread on every host",
                       ExitStatus::kClusterFailed});
   }
+  tell_step();
+}
+
+void CompositorRole::tell_step() {
   const Step step = samples_->step();
   if (step == told_step_) return;
   told_step_ = step;

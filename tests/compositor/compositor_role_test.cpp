@@ -118,6 +118,19 @@ TEST_F(CompositorRoleTest, TellsAStepWhenTheLastOneMissingBeforeItComes) {
   EXPECT_EQ(red_of(*received<BandPicture>().at(0)), 0.75f) << "what came late is older";
 }
 
+TEST_F(CompositorRoleTest, WithABandWithoutTilesIsNeverWaitedFor) {
+  begin_session(2);  // of one row of tiles, which the second one has
+  begin_view(1);
+  collect(1);
+  run();
+  const auto ready = received<BandReady>();
+  ASSERT_EQ(ready.size(), 1u);
+  EXPECT_EQ(ready[0]->epoch, Epoch{1});
+  EXPECT_EQ(ready[0]->step, kLastStep);
+  ASSERT_EQ(received<BandPicture>().size(), 1u);
+  EXPECT_EQ(received<BandPicture>()[0]->pixels.size(), 0u);
+}
+
 TEST_F(CompositorRoleTest, SmoothsItsBandIfTheFilterIsBiquadratic) {
   begin_session();
   begin_view(1);
