@@ -14,11 +14,6 @@
 #include "worker/kernels/visible_cells.h"
 
 namespace goldthread {
-namespace {
-
-constexpr double kCellEdge = 8;  ///< in voxels
-
-}  // namespace
 
 class CommittedScene {
  public:
@@ -156,7 +151,7 @@ std::vector<glm::dvec3> visible_points(const CommittedScene& scene, std::size_t 
     const glm::dvec3 place(cell % counts.x, cell / counts.x % counts.y,
                            cell / counts.x / counts.y);
     const glm::dvec3 last(geometry.size - 1);
-    all.push_back(world_from_index * glm::dvec4(glm::min(kCellEdge * (place + 0.5), last), 1));
+    all.push_back(world_from_index * glm::dvec4(glm::min(double(kCellEdge) * (place + 0.5), last), 1));
   }
   std::vector<glm::dvec3> chosen;
   const std::size_t count = std::min(most, all.size());

@@ -104,6 +104,28 @@ if (!mpi) {
     assert.ok(difference(await page.picture(), picture).mean > 0.1);
   });
 
+  test('How good the picture is stands at the picture', async () => {
+    const { estimatedError } = await page.rest();
+    assert.ok(estimatedError >= 0, `${estimatedError}`);
+    await page.until('a status of the picture at rest', ({ phase }) => phase === 'converged');
+    await page.page.getByText(/^± \S+ \/ 255 · \S+ samples per pixel · converged$/).waitFor();
+  });
+
+  test('It rocks at rest on wish, until something is done', async () => {
+    await page.rest();
+    await page.page.keyboard.press('c');
+    const { cine, display } = await page.until('the loop plays', (state) => state.cine.playing, 120);
+    assert.equal(cine.frames, 7);
+    assert.equal(display.cine, true);
+    await page.page.getByText(/ · rocking$/).waitFor();
+    await page.drag(3, 10, 0);
+    await page.until('a picture ended the loop', (state) => !state.cine.playing && state.cine.frames < 7);
+    await page.until('it rocks again', (state) => state.cine.playing, 120);
+    await page.page.keyboard.press('c');
+    await page.until('it stands still', (state) => !state.display.cine && state.cine.frames === 0);
+    await expectOffline(page);
+  });
+
   test('A second page watches, and takes over', async () => {
     const second = await SessionPage.open(browser, session.url);
     const watching = await second.rest();

@@ -87,11 +87,11 @@ test('Flow.AnInputThatIsNeverAnsweredBlocksForABoundedTime', () => {
   expect(flow.mayFlow(1100)).toBe(true);
 });
 
-test('Flow.ARefusedInputDoesNotBlock', () => {
+test('Flow.AnInputThatNeedsNoPictureDoesNotBlock', () => {
   const flow = new Flow();
   flow.next(0, 0);
   flow.next(0, 0);
-  flow.refused(2);
+  flow.settled(2);
   expect(flow.mayFlow(1)).toBe(true);
 });
 

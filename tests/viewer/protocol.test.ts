@@ -3,11 +3,12 @@ import { decodeMessage } from '../../viewer/src/protocol';
 import { scene, volume } from '../../viewer/mock/scene';
 
 const welcome = {
-  type: 'welcome', protocol: 1, version: '0.1.0', viewer: 2, driver: 1, viewers: 2, sizeFixed: true, scene, volume,
+  type: 'welcome', protocol: 2, version: '0.1.0', viewer: 2, driver: 1, viewers: 2, sizeFixed: true, scene, volume,
+  display: { filter: 'box', update: 'frameless', cine: true },
 };
 const status = {
-  type: 'status', epoch: 4, spacing: 0.5, converged: 0.25, estimatedError: 1.5, framesPerSecond: 12, rays: 1e6,
-  seconds: 0.5, features: ['shading'], kernel: 'AVX2',
+  type: 'status', epoch: 4, step: 9, samplesPerPixel: 2.5, converged: 0.25, target: 0.5, estimatedError: 1.5, spatialError: 0.7,
+  temporalError: null, phase: 'refining', framesPerSecond: 12, rays: 1e6, seconds: 0.5, features: ['shading'], kernel: 'AVX2',
   ranks: [{ rank: 0, role: 'master', host: 'a', state: 'idle', busy: 0.5, tiles: 3 }],
 };
 
@@ -29,12 +30,30 @@ test('Protocol.EveryTypeOfTheDocumentIsKnown', () => {
   for (const message of [
     welcome, status, { type: 'loading', what: 'x', done: 1, total: 2 }, { type: 'driver', driver: 1, viewers: 2 },
     { type: 'view', camera: scene.camera, width: 3, height: 4 }, { type: 'scene', scene, viewer: 1, serial: 2 },
+    { type: 'display', filter: 'bicubic', update: '50', cine: false, viewer: 1, serial: 2 },
     { type: 'refused', serial: 3, ...failure }, { type: 'failed', ...failure }, { type: 'pong', time: 1.5 },
   ]) expect(decoded(message), message.type).toMatchObject({ ok: true, value: { type: message.type } });
 });
 
+test('Protocol.ADisplayTellsWhoChoseIt', () => {
+  const display = { filter: 'piecewise-quadratic', update: '25', cine: true };
+  expect(decoded({ type: 'display', ...display, viewer: 3, serial: 7 }))
+    .toEqual({ ok: true, value: { type: 'display', display, viewer: 3, serial: 7 } });
+  expect(decoded({ type: 'display', ...display, filter: 'sinc' }).ok).toBe(false);
+  expect(decoded({ type: 'display', ...display, update: 50 }).ok).toBe(false);
+  expect(decoded({ type: 'display', ...display, cine: 1 }).ok).toBe(false);
+  expect(decoded(welcome)).toMatchObject({ value: { display: welcome.display } });
+});
+
+test('Protocol.WhatIsNotEstimatedIsNull', () => {
+  expect(decoded(status)).toMatchObject({ value: { estimatedError: 1.5, spatialError: 0.7, temporalError: null, phase: 'refining' } });
+  expect(decoded({ ...status, estimatedError: null })).toMatchObject({ value: { estimatedError: null } });
+  expect(decoded({ ...status, phase: 'waiting' }).ok).toBe(false);
+});
+
 test('Protocol.AMissingFieldIsNamed', () => {
   expect(decoded(without(welcome, 'scene'))).toEqual({ ok: false, problem: 'scene: an object expected' });
+  expect(decoded(without(welcome, 'display'))).toEqual({ ok: false, problem: 'display: an object expected' });
   expect(decoded(without(welcome, 'viewer'))).toEqual({ ok: false, problem: 'viewer: a count expected' });
   expect(decoded({ ...welcome, volume: { ...volume, range: [0] } }))
     .toEqual({ ok: false, problem: 'volume.range: 2 numbers expected' });
@@ -43,8 +62,8 @@ test('Protocol.AMissingFieldIsNamed', () => {
 });
 
 test('Protocol.AnotherProtocolIsRefused', () => {
-  const message = decoded({ ...welcome, protocol: 2 });
-  expect(!message.ok && message.problem).toContain('protocol 2');
+  const message = decoded({ ...welcome, protocol: 1 });
+  expect(!message.ok && message.problem).toContain('protocol 1');
 });
 
 test('Protocol.UnsortedNodesAreRefused', () => {

@@ -4,19 +4,20 @@ import { decodeRegion, type Region } from '../../viewer/src/region';
 
 /** A region as docs/viewer-protocol.md lays it out, with `change` applied to its header. */
 function bytes(change: (view: DataView) => void = () => {}, payload = 5): ArrayBuffer {
-  const buffer = new ArrayBuffer(40 + payload);
+  const buffer = new ArrayBuffer(44 + payload);
   const view = new DataView(buffer);
   [0x47525447, 7, 3, 2, 91].forEach((value, i) => view.setUint32(4 * i, value, true));
   [10, 20, 30, 40, 64, 96].forEach((value, i) => view.setUint16(20 + 2 * i, value, true));
-  [2, 1, 3, 4, 1].forEach((value, i) => view.setUint8(32 + i, value));
+  [2, 1, 3, 0, 1, 5, 7].forEach((value, i) => view.setUint8(32 + i, value));
+  view.setFloat32(40, 0.375, true);
   change(view);
   return buffer;
 }
 
 function region(picture: number, index: number, count: number, imageWidth = 8): Region {
   return {
-    picture, index, count, imageWidth, imageHeight: 8, epoch: 1, viewer: 0, serial: 0, encoding: 'zstd', spacing: 1,
-    final: false, rect: { x: 0, y: 0, width: 1, height: 1 }, payload: new Uint8Array(1),
+    picture, index, count, imageWidth, imageHeight: 8, epoch: 1, viewer: 0, serial: 0, encoding: 'zstd',
+    final: false, cineFrame: 0, cineFrames: 0, estimatedError: null, rect: { x: 0, y: 0, width: 1, height: 1 }, payload: new Uint8Array(1),
   };
 }
 
@@ -24,7 +25,8 @@ test('Region.EveryFieldIsReadFromItsPlace', () => {
   const decoded = decodeRegion(bytes());
   expect(decoded.ok && { ...decoded.value, payload: decoded.value.payload.length }).toEqual({
     picture: 7, epoch: 3, viewer: 2, serial: 91, rect: { x: 10, y: 20, width: 30, height: 40 }, imageWidth: 64,
-    imageHeight: 96, encoding: 'zstd', index: 1, count: 3, spacing: 4, final: true, payload: 5,
+    imageHeight: 96, encoding: 'zstd', index: 1, count: 3, final: true, cineFrame: 5, cineFrames: 7,
+    estimatedError: 0.375, payload: 5,
   });
 });
 
@@ -42,10 +44,23 @@ test('Region.BrokenHeadersAreRefused', () => {
     ['count', (view) => view.setUint8(34, 0)],
     ['final flag', (view) => view.setUint8(36, 2)],
     ['reserved', (view) => view.setUint8(39, 1)],
+    ['a spacing', (view) => view.setUint8(35, 8)],
+    ['cine frame 0 of 7', (view) => view.setUint8(37, 0)],
+    ['cine frame 8 of 7', (view) => view.setUint8(37, 8)],
+    ['cine frame 5 of none', (view) => view.setUint8(38, 0)],
+    ['cine frame 5 of 6', (view) => view.setUint8(38, 6)],
+    ['error', (view) => view.setFloat32(40, NaN, true)],
   ];
   expect(broken.filter(([, change]) => decodeRegion(bytes(change)).ok).map(([name]) => name)).toEqual([]);
   expect(decodeRegion(bytes(() => {}, 0)).ok).toBe(false);
   expect(decodeRegion(new ArrayBuffer(3)).ok).toBe(false);
+});
+
+test('Region.ANegativeErrorIsUnknown', () => {
+  for (const [error, decoded] of [[-1, null], [-Infinity, null], [0, 0], [2.5, 2.5]] as const) {
+    const result = decodeRegion(bytes((view) => view.setFloat32(40, error, true)));
+    expect(result.ok && result.value.estimatedError).toBe(decoded);
+  }
 });
 
 test('PictureAssembler.APictureComesOutOnceWhenAllRegionsHaveCome', () => {

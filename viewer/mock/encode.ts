@@ -5,7 +5,7 @@ import jpeg from 'jpeg-js';
 
 export interface PictureFields {
   picture: number; epoch: number; viewer: number; serial: number; width: number; height: number;
-  spacing: number; final: boolean;
+  lossless: boolean; final: boolean; cineFrame: number; cineFrames: number; error: number;
 }
 
 /** A legal zstd frame that compresses nothing. */
@@ -37,12 +37,13 @@ export function regionsOf(rgb: Uint8Array, fields: PictureFields): Buffer[] {
   const split = height >> 1;
   return [[0, split], [split, height - split]].map(([y, rows], index) => {
     const band = rgb.subarray(y! * width * 3, (y! + rows!) * width * 3);
-    const header = Buffer.alloc(40);
+    const header = Buffer.alloc(44);
     [0x47525447, fields.picture, fields.epoch, fields.viewer, fields.serial]
       .forEach((value, i) => header.writeUInt32LE(value, 4 * i));
     [0, y!, width, rows!, width, height].forEach((value, i) => header.writeUInt16LE(value, 20 + 2 * i));
-    const lossless = fields.spacing === 1;
-    header.set([lossless ? 2 : 1, index, 2, fields.spacing, fields.final ? 1 : 0], 32);
+    const { lossless } = fields;
+    header.set([lossless ? 2 : 1, index, 2, 0, fields.final ? 1 : 0, fields.cineFrame, fields.cineFrames], 32);
+    header.writeFloatLE(fields.error, 40);
     return Buffer.concat([header, lossless ? rawZstd(band) : jpegOf(band, width, rows!)]);
   });
 }

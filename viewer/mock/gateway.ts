@@ -1,16 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
 // A gateway without a cluster, for developing the page: it speaks docs/viewer-protocol.md on
-// /session, renders a phantom from coarse to fine, and refuses a few edits so that refusals can be
-// seen. It trusts its page and must not be used as a server.
+// /session, renders a phantom from coarse to fine, rocks it, and refuses a few edits so that refusals
+// can be seen. It trusts its page and must not be used as a server.
 
 import type { Server } from 'node:http';
 import type { Http2SecureServer } from 'node:http2';
 import { WebSocketServer, type WebSocket } from 'ws';
-import type { Camera } from '../src/camera';
-import type { ToGateway } from '../src/protocol';
+import { orbit, type Camera } from '../src/camera';
+import { kDefaultDisplay, type Display } from '../src/display';
+import type { Phase, ToGateway } from '../src/protocol';
 import { sceneOf, editableOf } from '../src/scene';
 import { regionsOf } from './encode';
-import { rendered } from './render';
+import { kTarget, refined, type Refined } from './refine';
 import { scene, volume } from './scene';
 
 type Json = Record<string, unknown>;
@@ -26,6 +27,11 @@ function patched(target: unknown, patch: unknown): unknown {
   return base;
 }
 
+const kCineFrames = 7;
+const kCineDegrees = 2;
+const kCineSamples = 1 / 4;
+const pause = (milliseconds: number): Promise<void> => new Promise((resolve) => setTimeout(resolve, milliseconds));
+
 class MockGateway {
   private pages_ = new Map<number, { socket: WebSocket; unacknowledged: number }>();
   private numbers_ = 0;
@@ -34,6 +40,10 @@ class MockGateway {
   private epoch_ = 1;
   private picture_ = 0;
   private input_ = { viewer: 0, serial: 0 };
+  private display_: Display = kDefaultDisplay;
+  private phase_: Phase = 'moving';
+  private refined_: Pick<Refined, 'step' | 'samplesPerPixel' | 'error'> = { step: 0, samplesPerPixel: 0, error: -1 };
+  private rested_ = 0;
 
   constructor() {
     void this.render();
@@ -70,22 +80,29 @@ class MockGateway {
     if (message.type === 'size') this.view({ width: message.width, height: message.height });
     if (message.type === 'edit' && !this.edited(viewer, socket, message)) return;
     this.input_ = { viewer, serial: message.serial };
+    if (message.type === 'display') this.displayed(message);
     ++this.epoch_;
   }
 
   private async hello(viewer: number, socket: WebSocket): Promise<void> {
     for (let done = 0; done <= 4 && this.numbers_ === 1; ++done) {
       socket.send(JSON.stringify({ type: 'loading', what: 'phantom.nii.gz', done: done * 16e6, total: 64e6 }));
-      await new Promise((resolve) => setTimeout(resolve, 150));
+      await pause(150);
     }
     this.pages_.set(viewer, { socket, unacknowledged: 0 });
     this.driver_ ||= viewer;
     socket.send(JSON.stringify({
-      type: 'welcome', protocol: 1, version: '0.1.0-mock', viewer, driver: this.driver_, viewers: this.pages_.size,
+      type: 'welcome', protocol: 2, version: '0.1.0-mock', viewer, driver: this.driver_, viewers: this.pages_.size,
       sizeFixed: false, scene: this.scene_, volume,
+      display: this.display_,
     }));
     this.all({ type: 'driver', driver: this.driver_, viewers: this.pages_.size });
     ++this.epoch_;
+  }
+
+  private displayed({ filter, update, cine }: Display): void {
+    this.display_ = { filter, update, cine };
+    this.all({ type: 'display', ...this.display_, ...this.input_ });
   }
 
   private view(change: { camera?: Camera; width?: number; height?: number }): void {
@@ -121,40 +138,59 @@ class MockGateway {
     for (const { socket } of this.pages_.values()) socket.send(JSON.stringify(message));
   }
 
-  /** Coarse to fine, for ever; a new epoch starts at the coarse end again. */
+  /** Coarse to fine, then rocking; a new epoch starts at the coarse end again. */
   private async render(): Promise<void> {
-    for (let shown = 0; ; await new Promise((resolve) => setTimeout(resolve, 5))) {
+    for (let shown = 0; ; await pause(5)) {
       if (shown === this.epoch_ || this.pages_.size === 0) continue;
       shown = this.epoch_;
-      for (const spacing of [8, 4, 2, 1]) {
-        if (!(await this.level(spacing))) break;
-      }
+      await this.refine(shown);
+      if (shown === this.epoch_ && this.display_.cine) await this.rock(shown);
     }
   }
 
-  private async level(spacing: number): Promise<boolean> {
-    const epoch = this.epoch_;
+  private async refine(epoch: number): Promise<void> {
     const { camera, editable, width, height } = sceneOf(this.scene_, 'scene');
-    const { viewer, serial } = this.input_;
-    const rows = rendered(camera, editable, width, height, spacing);
-    for (let row = rows.next(), rested = performance.now(); ; row = rows.next()) {
-      if (row.done) {
-        const fields = { picture: ++this.picture_, epoch, viewer, serial, width, height, spacing, final: spacing === 1 };
-        this.publish(regionsOf(row.value, fields));
-        this.spacing_ = spacing;
-        return epoch === this.epoch_;
-      }
-      if (performance.now() - rested > 8) {
-        await new Promise((resolve) => setImmediate(resolve));
-        rested = performance.now();
-        if (epoch !== this.epoch_ && spacing < 8) return false;
+    this.phase_ = 'moving';
+    for (const next of refined(camera, editable, width, height)) {
+      // The first picture is shown even if it is overtaken: a drag would show nothing else.
+      if (await this.givesWay() && epoch !== this.epoch_ && this.phase_ !== 'moving') return;
+      if (!next) continue;
+      this.refined_ = next;
+      const final = next.error < kTarget;
+      this.publish(epoch, next, { lossless: next.samplesPerPixel >= 1, final });
+      this.phase_ = final ? 'converged' : 'refining';
+      if (final || epoch !== this.epoch_) return;
+    }
+  }
+
+  private async rock(epoch: number): Promise<void> {
+    const { camera, editable, width, height } = sceneOf(this.scene_, 'scene');
+    this.phase_ = 'cine';
+    for (let frame = 1; frame <= kCineFrames; ++frame) {
+      const turned = orbit(camera, kCineDegrees * (frame - (kCineFrames + 1) / 2), 0);
+      for (const next of refined(turned, editable, width, height)) {
+        await this.givesWay();
+        if (epoch !== this.epoch_) return;
+        if (!next || next.samplesPerPixel < kCineSamples) continue;
+        while ([...this.pages_.values()].some(({ unacknowledged }) => unacknowledged >= 2)) await pause(5);
+        this.publish(epoch, next, { cineFrame: frame, cineFrames: kCineFrames });
+        break;
       }
     }
   }
 
-  private spacing_ = 8;
+  /** Lets others have their turn now and then; true if it did. */
+  private async givesWay(): Promise<boolean> {
+    if (performance.now() - this.rested_ < 8) return false;
+    await new Promise((resolve) => setImmediate(resolve));
+    this.rested_ = performance.now();
+    return true;
+  }
 
-  private publish(regions: Buffer[]): void {
+  private publish(epoch: number, { rgb, width, height, error }: Refined,
+    kind: { lossless?: boolean; final?: boolean; cineFrame?: number; cineFrames?: number }): void {
+    const regions = regionsOf(rgb, { picture: ++this.picture_, epoch, ...this.input_, width, height, error,
+      lossless: false, final: false, cineFrame: 0, cineFrames: 0, ...kind });
     for (const page of this.pages_.values()) {
       if (page.unacknowledged >= 2) continue;
       ++page.unacknowledged;
@@ -163,12 +199,15 @@ class MockGateway {
   }
 
   private status(): void {
-    const busy = this.spacing_ > 1 ? 0.9 : 0.05;
+    const { step, samplesPerPixel, error } = this.refined_;
+    const busy = this.phase_ === 'converged' ? 0.05 : 0.9;
     const rank = (rank: number, role: string, share: number, state = 'busy') =>
       ({ rank, role, host: `node${rank >> 1}`, state, busy: busy * share, tiles: rank * 7 });
     this.all({
-      type: 'status', epoch: this.epoch_, spacing: this.spacing_, converged: 1 / this.spacing_,
-      estimatedError: 0.45 * this.spacing_, framesPerSecond: 9.5, rays: 262144 / this.spacing_ ** 2, seconds: 0.42,
+      type: 'status', epoch: this.epoch_, step, samplesPerPixel, target: kTarget,
+      converged: error > 0 ? Math.min(kTarget / error, 1) : 0, estimatedError: error > 0 ? error : null,
+      spatialError: Math.sqrt(1 / Math.max(samplesPerPixel, 1e-3)), temporalError: this.phase_ === 'moving' ? 3.2 : 0,
+      phase: this.phase_, framesPerSecond: 9.5, rays: 262144 * samplesPerPixel, seconds: 0.42,
       features: ['shading', 'headlight'], kernel: 'AVX2',
       ranks: [rank(0, 'master', 0.2), rank(1, 'compositor', 0.4), rank(2, 'worker', 1), rank(3, 'worker', 0.93),
         rank(4, 'worker', 0, 'lost'), rank(5, 'worker', 0.97)],

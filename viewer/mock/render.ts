@@ -64,9 +64,9 @@ function cast(editable: Editable, tables: Tables, o: Vec3, d: Vec3, near: number
   return [r + through * background[0], g + through * background[1], b + through * background[2]];
 }
 
-/** RGB rows from the top; a generator that yields after each row of samples. */
-export function* rendered(camera: Camera, editable: Editable, width: number, height: number, spacing: number):
-  Generator<void, Uint8Array> {
+/** RGB rows from the top, by rays at that place of each square; a generator that yields after each row of samples. */
+export function* rendered(camera: Camera, editable: Editable, width: number, height: number, spacing: number,
+  [along, down]: [number, number] = [0.5, 0.5]): Generator<null, Uint8Array> {
   const pixels = new Uint8Array(width * height * 3);
   const step = stepOf(spacing);
   const tables = tablesOf(editable, step);
@@ -77,15 +77,15 @@ export function* rendered(camera: Camera, editable: Editable, width: number, hei
   const [near, far] = [Math.max(0, reach - volume.radius * 1.5), reach + volume.radius * 1.5];
   for (let y = 0; y < height; y += spacing) {
     for (let x = 0; x < width; x += spacing) {
-      const u = ((2 * (x + spacing / 2) - width) / height) * half;
-      const v = (1 - (2 * (y + spacing / 2)) / height) * half;
+      const u = ((2 * (x + spacing * along) - width) / height) * half;
+      const v = (1 - (2 * (y + spacing * down)) / height) * half;
       const ray = normalized([0, 1, 2].map((i) => forward[i]! + u * right[i]! + v * up[i]!) as unknown as Vec3);
       const color = cast(editable, tables, camera.position, ray, near, far, step).map((c) => Math.min(c, 1) * 255);
       for (let j = y; j < Math.min(y + spacing, height); ++j) {
         for (let i = x; i < Math.min(x + spacing, width); ++i) pixels.set(color, (j * width + i) * 3);
       }
     }
-    yield;
+    yield null;
   }
   return pixels;
 }

@@ -9,7 +9,8 @@ const directory = process.argv[2] ?? 'shots';
 const address = process.argv[3] ?? 'http://127.0.0.1:5173/?token=mock';
 mkdirSync(directory, { recursive: true });
 const browser = await chromium.launch({
-  executablePath: process.env.CHROMIUM ?? '/usr/bin/chromium', args: ['--no-sandbox', '--disable-gpu'],
+  executablePath: process.env.CHROMIUM ?? '/usr/bin/chromium',
+  args: ['--no-sandbox', '--disable-gpu', '--disable-background-networking', '--no-first-run'],
 });
 
 async function shoot(name, options, prepare = async () => {}) {
@@ -43,6 +44,17 @@ await shoot('status', { viewport: desktop, colorScheme: 'dark' }, async (page) =
   await page.waitForTimeout(2500);
   await open('all')(page);
   await page.evaluate(() => { document.querySelector('.scroll').scrollTop = 1e6; });
+});
+await shoot('moving', { viewport: desktop, colorScheme: 'dark' }, async (page) => {
+  await page.mouse.move(400, 400);
+  await page.mouse.down();
+  for (let i = 0; i < 10; ++i) await page.mouse.move(400 - 6 * i, 400);
+  await open('Image')(page);
+});
+await shoot('rocking', { viewport: desktop, colorScheme: 'light' }, async (page) => {
+  await page.keyboard.press('c');
+  await page.waitForFunction(() => globalThis.goldthread.state().cine.playing, null, { timeout: 90000 });
+  await open('Image')(page);
 });
 await shoot('lists', { viewport: { width: 1280, height: 1500 }, colorScheme: 'light' }, open('all'));
 await shoot('help', { viewport: desktop, colorScheme: 'dark' }, (page) => page.keyboard.press('?'));

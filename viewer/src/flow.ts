@@ -29,8 +29,8 @@ export class Flow {
     return match ? now - match.input : null;
   }
 
-  /** The input will never be seen in a picture. */
-  refused(serial: number): void {
+  /** The input needs no picture: it was refused, or did what it can do without one. */
+  settled(serial: number): void {
     this.open_ = this.open_.filter((entry) => entry.serial !== serial);
   }
 

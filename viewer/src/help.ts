@@ -14,6 +14,7 @@ const kHelp: readonly (readonly [string, readonly (readonly [string, string])[]]
   ]],
   ['Keys everywhere', [
     ['r', 'frame the volume'], ['Home', 'the scene’s camera'], ['p', 'fold or unfold the panel'], ['s', 'save a screenshot'],
+    ['c', 'rock when at rest'],
     ['Ctrl + Z, Ctrl + Shift + Z', 'undo, redo'], ['?', 'this help'],
   ]],
   ['On a transfer function’s node', [

@@ -39,7 +39,7 @@ const canvas = el('canvas', {
   aria: { label: 'The rendered picture. Arrow keys turn it, plus and minus zoom, question mark shows help.' },
 });
 const stage = el('main', { class: 'stage' }, canvas);
-const view = new PictureView(canvas);
+const view = new PictureView(canvas, () => session.rocks);
 const place = keepLaidOut(canvas, stage);
 const help = helpDialog();
 

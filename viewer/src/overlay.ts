@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 // What lies over the picture: the connection's state in words, loading, failures, notices, the
-// golden line of convergence and one line of numbers.
+// golden line of convergence, how good the picture is, and one line of numbers.
 
 import { button } from './controls';
 import type { Connection } from './connection';
 import { el, shown } from './dom';
+import { qualityLine, stateOf } from './quality';
 import type { Session } from './session';
 
 const kNoticeMs = 6000;
@@ -16,11 +17,15 @@ export interface Overlay {
 
 export function overlay(session: Session, connection: Connection, useToken: (token: string) => void): Overlay {
   const message = messageBox(session, connection, useToken);
-  const numbers = el('output', { class: 'numbers' });
+  const quality = el('p', { class: 'quality', title: 'Estimated error of this picture (root mean square, of 255 levels), and what happens to it' });
+  const numbers = el('p', { class: 'numbers' });
   const notice = el('p', { class: 'notice', role: 'status', hidden: true });
   const thread = el('div', { class: 'thread', role: 'progressbar', aria: { label: 'Convergence', valuemin: '0', valuemax: '100' } }, el('span'));
   let timer = 0;
   const update = (): void => {
+    const { connected, picture, status, unanswered } = session;
+    quality.textContent = connected ? qualityLine(picture, status, unanswered) : '';
+    quality.dataset.state = stateOf(picture, status, unanswered) ?? '';
     numbers.textContent = numbersOf(session);
     const converged = session.picture?.final ? 1 : Math.min(Math.max(session.status?.converged ?? 0, 0), 1);
     (thread.firstElementChild as HTMLElement).style.width = `${converged * 100}%`;
@@ -28,14 +33,15 @@ export function overlay(session: Session, connection: Connection, useToken: (tok
     thread.classList.toggle('done', session.picture?.final ?? false);
   };
   session.changed.listen((topic) => {
-    if (topic === 'status' || topic === 'picture' || topic === 'connection') update();
+    if (topic === 'status' || topic === 'picture' || topic === 'camera' || topic === 'connection') update();
     if (topic !== 'notice') return;
     notice.textContent = session.notice;
     notice.hidden = session.notice === '';
     window.clearTimeout(timer);
     timer = window.setTimeout(() => { notice.hidden = true; }, kNoticeMs);
   });
-  return { element: el('div', { class: 'overlay' }, message, notice, numbers), line: thread };
+  return { element: el('div', { class: 'overlay' }, message, notice,
+    el('div', { class: 'picture-facts' }, quality, numbers)), line: thread };
 }
 
 function numbersOf(session: Session): string {
@@ -46,7 +52,6 @@ function numbersOf(session: Session): string {
   const lost = status?.ranks.filter(({ state }) => state === 'lost').length ?? 0;
   return [
     `${picture.width} × ${picture.height}`,
-    picture.final ? 'final' : `${shown(status?.spacing ?? picture.spacing, 3)} px`,
     rate > 0 ? `${shown(rate, 2)} per s` : null,
     median === null ? null : `${median.toFixed(0)} ms`,
     lost > 0 ? `${lost} ${lost === 1 ? 'rank' : 'ranks'} lost` : null,

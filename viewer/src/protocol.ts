@@ -4,17 +4,19 @@
 
 import * as decode from './decode';
 import { type Camera } from './camera';
+import { displayFrom, displayOf, type Display } from './display';
 import { failure, success, type Result } from './result';
 import { cameraOf, sceneOf, type Edit, type SceneState } from './scene';
 import type { Vec3 } from './vector';
 
-export const kProtocol = 1;
+export const kProtocol = 2;
 
 export type ToGateway =
   | { type: 'hello'; protocol: number }
   | { type: 'camera'; serial: number; camera: Camera }
   | { type: 'edit'; serial: number; edit: Edit }
   | { type: 'size'; serial: number; width: number; height: number }
+  | ({ type: 'display'; serial: number } & Display)
   | { type: 'drive' }
   | { type: 'ack'; picture: number }
   | { type: 'ping'; time: number };
@@ -39,11 +41,22 @@ export interface RankStatus {
   readonly tiles: number;
 }
 
+export type Phase = 'moving' | 'refining' | 'converged' | 'cine';
+
 export interface Status {
   readonly epoch: number;
-  readonly spacing: number;
+  /** Steps of refinement that each part of the picture has taken. */
+  readonly step: number;
+  readonly samplesPerPixel: number;
   readonly converged: number;
+  /** The error to get to, in 1/255. */
+  readonly target: number;
+  /** Root mean square in 1/255. */
   readonly estimatedError: number | null;
+  /** In pixels. */
+  readonly spatialError: number | null;
+  readonly temporalError: number | null;
+  readonly phase: Phase;
   readonly framesPerSecond: number;
   readonly rays: number;
   readonly seconds: number;
@@ -67,6 +80,7 @@ export interface Welcome {
   readonly sizeFixed: boolean;
   readonly scene: SceneState;
   readonly volume: VolumeInfo;
+  readonly display: Display;
 }
 
 export type FromGateway =
@@ -75,6 +89,7 @@ export type FromGateway =
   | { readonly type: 'driver'; readonly driver: number; readonly viewers: number }
   | { readonly type: 'view'; readonly camera: Camera; readonly width: number; readonly height: number }
   | { readonly type: 'scene'; readonly scene: SceneState; readonly viewer: number; readonly serial: number }
+  | { readonly type: 'display'; readonly display: Display; readonly viewer: number; readonly serial: number }
   | ({ readonly type: 'refused'; readonly serial: number } & Failure)
   | ({ readonly type: 'status' } & Status)
   | ({ readonly type: 'failed' } & Failure)
@@ -114,6 +129,33 @@ const rankOf: decode.Decoder<RankStatus> = (value, where) => {
   };
 };
 
+/** Who asked for a change, and by which of its inputs. */
+const causeOf = (at: At): { viewer: number; serial: number } => ({
+  viewer: at('viewer', decode.optional(decode.count, 0)),
+  serial: at('serial', decode.optional(decode.count, 0)),
+});
+
+const statusOf = (at: At): Status => {
+  const estimate = decode.optional<number | null>(decode.number, null);
+  return {
+    epoch: at('epoch', decode.count),
+    step: at('step', decode.count),
+    samplesPerPixel: at('samplesPerPixel', decode.number),
+    converged: at('converged', decode.number),
+    target: at('target', decode.number),
+    estimatedError: at('estimatedError', estimate),
+    spatialError: at('spatialError', estimate),
+    temporalError: at('temporalError', estimate),
+    phase: at('phase', decode.oneOf('moving', 'refining', 'converged', 'cine')),
+    framesPerSecond: at('framesPerSecond', decode.optional(decode.number, 0)),
+    rays: at('rays', decode.optional(decode.number, 0)),
+    seconds: at('seconds', decode.optional(decode.number, 0)),
+    features: at('features', decode.optional(decode.list(decode.text, 64), [] as string[])),
+    kernel: at('kernel', decode.optional(decode.text, '')),
+    ranks: at('ranks', decode.optional(decode.list(rankOf, 65536), [] as RankStatus[])),
+  };
+};
+
 const decoders: { [K in FromGateway['type']]: (at: At) => Omit<Extract<FromGateway, { type: K }>, 'type'> } = {
   welcome: (at) => {
     const protocol = at('protocol', decode.count);
@@ -128,6 +170,7 @@ const decoders: { [K in FromGateway['type']]: (at: At) => Omit<Extract<FromGatew
       sizeFixed: at('sizeFixed', decode.optional(decode.boolean, false)),
       scene: at('scene', sceneOf),
       volume: at('volume', volumeOf),
+      display: at('display', displayOf),
     };
   },
   loading: (at) => ({
@@ -139,24 +182,10 @@ const decoders: { [K in FromGateway['type']]: (at: At) => Omit<Extract<FromGatew
   view: (at) => ({
     camera: at('camera', cameraOf), width: at('width', decode.count), height: at('height', decode.count),
   }),
-  scene: (at) => ({
-    scene: at('scene', sceneOf),
-    viewer: at('viewer', decode.optional(decode.count, 0)),
-    serial: at('serial', decode.optional(decode.count, 0)),
-  }),
+  scene: (at) => ({ scene: at('scene', sceneOf), ...causeOf(at) }),
+  display: (at) => ({ display: displayFrom(at), ...causeOf(at) }),
   refused: (at) => ({ serial: at('serial', decode.optional(decode.count, 0)), ...failureOf(at) }),
-  status: (at) => ({
-    epoch: at('epoch', decode.count),
-    spacing: at('spacing', decode.number),
-    converged: at('converged', decode.number),
-    estimatedError: at('estimatedError', decode.optional<number | null>(decode.number, null)),
-    framesPerSecond: at('framesPerSecond', decode.optional(decode.number, 0)),
-    rays: at('rays', decode.optional(decode.number, 0)),
-    seconds: at('seconds', decode.optional(decode.number, 0)),
-    features: at('features', decode.optional(decode.list(decode.text, 64), [] as string[])),
-    kernel: at('kernel', decode.optional(decode.text, '')),
-    ranks: at('ranks', decode.optional(decode.list(rankOf, 65536), [] as RankStatus[])),
-  }),
+  status: statusOf,
   failed: failureOf,
   pong: (at) => ({ time: at('time', decode.number) }),
 };

@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 // The state of the page: what the gateway said and what the user is doing to it. Everything that
 // the panels show is read from here, and every input goes through here; a page that does not drive
-// sends none. One pass per animation frame sends at most one camera, one edit and one size.
+// sends none. One pass per animation frame sends at most one camera, one edit, one
+// size and one choice of display.
 
 import { framed, type Camera } from './camera';
 import type { Connection, ConnectionState } from './connection';
+import { DisplayChoice, type Display } from './display';
 import { Edits } from './edits';
 import { Flow } from './flow';
 import { History } from './history';
@@ -12,10 +14,11 @@ import { Latencies, Rate } from './latency';
 import type { Look } from './link';
 import type { ShownPicture } from './picture-view';
 import type { Failure, FromGateway, Status, VolumeInfo, Welcome } from './protocol';
+import { ErrorHistory } from './quality';
 import { difference, type Edit, type Editable } from './scene';
 import { Signal } from './signal';
 
-export type Topic = 'connection' | 'driver' | 'camera' | 'scene' | 'status' | 'picture' | 'refused' | 'notice';
+export type Topic = 'connection' | 'driver' | 'camera' | 'scene' | 'display' | 'status' | 'picture' | 'refused' | 'notice';
 
 export class Session {
   readonly changed = new Signal<Topic>();
@@ -41,8 +44,10 @@ export class Session {
   notice = '';
   readonly latencies = new Latencies();
   readonly rate = new Rate();
+  readonly errors = new ErrorHistory();
   private readonly history_ = new History<Editable>((a, b) => Object.keys(difference(a, b)).length === 0);
   private readonly flow_ = new Flow();
+  private readonly display_ = new DisplayChoice();
   private unsentCamera_ = false;
   private movedCamera_ = false;
   private unsentSize_: { width: number; height: number } | null = null;
@@ -66,6 +71,15 @@ export class Session {
 
   get editable(): Editable | null {
     return this.edits?.shown ?? null;
+  }
+
+  get display(): Display {
+    return this.display_.shown;
+  }
+
+  /** May a cine loop play? Not while the user does something: that ends it at once. */
+  get rocks(): boolean {
+    return this.connected && this.display.cine && this.unanswered === 0;
   }
 
   get canUndo(): boolean {
@@ -125,6 +139,12 @@ export class Session {
     this.schedule(performance.now());
   }
 
+  choose(change: Partial<Display>): void {
+    if (!this.drives || !this.display_.choose(change)) return;
+    this.schedule(performance.now());
+    this.changed.emit('display');
+  }
+
   takeOver(): void {
     this.connection_.send({ type: 'drive' });
   }
@@ -138,6 +158,7 @@ export class Session {
     const now = performance.now();
     this.picture = picture;
     this.rate.mark(now);
+    if (picture.cineFrames === 0) this.errors.add(`${picture.viewer}.${picture.serial}`, picture.estimatedError, now);
     if (picture.viewer === this.viewer && picture.serial > 0) {
       const took = this.flow_.answered(picture.serial, now);
       if (took !== null) this.latencies.add(took);
@@ -161,7 +182,7 @@ export class Session {
   }
 
   private hasUnsent(): boolean {
-    return this.unsentCamera_ || this.unsentSize_ !== null || (this.edits?.waiting ?? false);
+    return this.unsentCamera_ || this.unsentSize_ !== null || this.display_.waiting || (this.edits?.waiting ?? false);
   }
 
   private schedule(time: number): void {
@@ -182,6 +203,10 @@ export class Session {
     const next = (): number => this.flow_.next(this.inputTime_, now);
     if (this.unsentSize_) this.connection_.send({ type: 'size', serial: next(), ...this.unsentSize_ });
     this.unsentSize_ = null;
+    if (this.display_.waiting) {
+      const serial = next();
+      this.connection_.send({ type: 'display', serial, ...this.display_.take(serial) });
+    }
     if (this.edits?.waiting) {
       const serial = next();
       this.connection_.send({ type: 'edit', serial, edit: this.edits.take(serial)! });
@@ -198,6 +223,7 @@ export class Session {
     this.movedCamera_ = false;
     this.unsentSize_ = null;
     this.askedSize_ = null;
+    this.display_.drop();
     this.edits?.drop();
   }
 
@@ -228,15 +254,13 @@ export class Session {
         if (!own) this.history_.clear();
         return this.changed.emit('scene');
       }
-      case 'refused': {
-        this.flow_.refused(message.serial);
-        this.askedSize_ = this.unsentSize_;
-        const { where, what, mend } = message;
-        if (!this.connected) this.failed = { where, what, mend };
-        this.refusal = { control: this.edits?.refuse(message.serial) ?? '', where, what, mend };
-        this.changed.emit('scene');
-        return this.changed.emit(this.connected ? 'refused' : 'connection');
+      case 'display': {
+        const own = message.viewer === this.viewer ? message.serial : 0;
+        this.flow_.settled(own);
+        this.display_.confirm(message.display, own);
+        return this.changed.emit('display');
       }
+      case 'refused': return this.refused(message.serial, message);
       case 'status':
         this.status = message;
         return this.changed.emit('status');
@@ -249,6 +273,17 @@ export class Session {
     }
   }
 
+  private refused(serial: number, { where, what, mend }: Failure): void {
+    this.flow_.settled(serial);
+    this.askedSize_ = this.unsentSize_;
+    if (!this.connected) this.failed = { where, what, mend };
+    const control = this.display_.refuse(serial) ? 'display' : this.edits?.refuse(serial) ?? '';
+    this.refusal = { control, where, what, mend };
+    this.changed.emit('scene');
+    this.changed.emit('display');
+    this.changed.emit(this.connected ? 'refused' : 'connection');
+  }
+
   private welcomed(message: Welcome): void {
     const { scene } = message;
     Object.assign(this, {
@@ -257,6 +292,7 @@ export class Session {
       size: { width: scene.width, height: scene.height }, refusal: null,
     });
     this.edits = new Edits(scene.editable);
+    this.display_.confirm(message.display, 0);
     this.original ??= { camera: scene.camera, editable: scene.editable };
     this.history_.clear();
     this.movedCamera_ = false;
@@ -264,6 +300,7 @@ export class Session {
     this.changed.emit('driver');
     this.changed.emit('camera');
     this.changed.emit('scene');
+    this.changed.emit('display');
   }
 
   private driverChanged(driver: number, viewers: number): void {
@@ -274,6 +311,7 @@ export class Session {
       this.dropInputs();
       this.flow_.abandon();
       this.changed.emit('scene');
+      this.changed.emit('display');
     }
     this.changed.emit('driver');
   }

@@ -12,6 +12,13 @@ export interface ShortcutActions {
 const typing = (target: EventTarget | null): boolean =>
   target instanceof HTMLElement && (target.matches('input:not([type=range], [type=checkbox], [type=radio], [type=color]), select, textarea'));
 
+function toggleCine(session: Session): void {
+  if (!session.drives) return;
+  const cine = !session.display.cine;
+  session.choose({ cine });
+  session.say(cine ? 'The picture will rock when it is at rest.' : 'The picture will stand still when it is at rest.');
+}
+
 export function installShortcuts(session: Session, actions: ShortcutActions): void {
   window.addEventListener('keydown', (event) => {
     if (typing(event.target) || event.altKey) return;
@@ -25,6 +32,7 @@ export function installShortcuts(session: Session, actions: ShortcutActions): vo
     else if (key === 'home' && session.original && !(event.target instanceof HTMLInputElement)) session.moveCamera(session.original.camera);
     else if (key === 'p') actions.fold();
     else if (key === 's') actions.screenshot();
+    else if (key === 'c') toggleCine(session);
     else return;
     event.preventDefault();
   });

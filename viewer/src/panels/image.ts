@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-// Image size, background and ray step. While the size follows the window, it is asked for again
+// Image size, background, ray step and display. While the size follows the window, it is asked for again
 // whenever the window's changes have come to rest.
 
 import { colorField, numberField, section, selectField } from '../controls';
 import { el } from '../dom';
 import { fitted } from '../image-size';
 import type { Session } from '../session';
+import { displayControls } from './display';
 
 type SizeChoice = 'fit' | 'full' | 'keep' | '256' | '512' | '768' | '1024';
 
@@ -60,5 +61,6 @@ export function imagePanel(session: Session, stage: HTMLElement): HTMLElement {
   background.element.dataset.control = 'background';
   step.element.dataset.control = 'step';
   return section('Image', false, size.element,
-    el('div', { class: 'row' }, el('span', { class: 'label' }, 'Now'), now), background.element, step.element);
+    el('div', { class: 'row' }, el('span', { class: 'label' }, 'Now'), now), background.element, step.element,
+    displayControls(session));
 }

@@ -1,66 +1,67 @@
 // SPDX-License-Identifier: Apache-2.0
-// How it goes: pictures per second, latency, convergence, and what each rank is doing.
+// How it goes: how good the picture is, pictures per second, latency, and what each rank is doing.
 
 import { section } from '../controls';
-import { el, set, shown, svg } from '../dom';
-import type { RankStatus } from '../protocol';
+import { el, shown } from '../dom';
+import type { RankStatus, Status } from '../protocol';
+import { errorCurve, figure } from '../quality';
 import type { Session } from '../session';
+import { latencyCurve, sparkline } from './sparkline';
 
-const kSparkWidth = 300;
-const kSparkHeight = 36;
+const kFacts = ['Estimated error', 'Samples per pixel', 'Step', 'Spatial error', 'Temporal error', 'Converged', 'Pictures',
+  'Latency', 'Rays', 'Epoch', 'Features', 'Kernel', 'Volume', 'Server'] as const;
+type Fact = (typeof kFacts)[number];
+
+const inPixels = (error: number | null): string => (error === null ? '–' : `${figure(error)} px`);
+
+function factsOf(status: Status): [Fact, string][] {
+  const { estimatedError, target } = status;
+  return [
+    ['Estimated error', `${estimatedError === null ? '–' : `${figure(estimatedError)} / 255`}, target ${figure(target)}`],
+    ['Samples per pixel', figure(status.samplesPerPixel)],
+    ['Step', String(status.step)],
+    ['Spatial error', inPixels(status.spatialError)],
+    ['Temporal error', inPixels(status.temporalError)],
+    ['Converged', `${(Math.min(Math.max(status.converged, 0), 1) * 100).toFixed(0)} %`],
+    ['Rays', `${Math.round(status.rays).toLocaleString('en')} in ${shown(status.seconds, 3)} s`],
+    ['Epoch', String(status.epoch)],
+    ['Features', status.features.join(', ') || 'none'],
+    ['Kernel', status.kernel || '–'],
+  ];
+}
 
 export function statusPanel(session: Session): HTMLElement[] {
-  const names = ['Pictures', 'Latency', 'Sample spacing', 'Converged', 'Estimated error', 'Rays', 'Epoch', 'Features', 'Kernel', 'Volume', 'Server'] as const;
-  const cells = new Map(names.map((name) => [name, el('dd', {}, '–')]));
+  const cells = new Map(kFacts.map((name) => [name, el('dd', {}, '–')]));
   const facts = el('dl', { class: 'facts' }, ...[...cells].flatMap(([name, cell]) => [el('dt', {}, name), cell]));
-  const spark = sparkline();
+  const errors = sparkline();
+  const latency = sparkline();
   const ranks = rankTable();
-  const write = (name: (typeof names)[number], value: string): void => {
+  const write = (name: Fact, value: string): void => {
     const cell = cells.get(name)!;
     if (cell.textContent !== value) cell.textContent = value;
   };
   const update = (): void => {
-    const { status, volume, picture, latencies } = session;
+    const { status, volume, latencies } = session;
     const [median, p95] = [latencies.quantile(0.5), latencies.quantile(0.95)];
     write('Pictures', `${shown(session.rate.perSecond(performance.now()), 3)} per s shown${status ? `, ${shown(status.framesPerSecond, 3)} rendered` : ''}`);
     write('Latency', median === null ? '–' : `${median.toFixed(0)} ms median, ${p95!.toFixed(0)} ms p95`);
     if (volume) write('Volume', `${volume.name}, ${volume.size.join(' × ')}, ${volume.type}, ${volume.range.map((v) => shown(v)).join(' … ')}`);
     write('Server', session.version ? `Goldthread ${session.version}, this is page ${session.viewer}, ${session.viewers} connected` : '–');
-    spark.show(latencies.recent);
+    latency.show(latencyCurve(latencies.recent));
+    errors.show(errorCurve(session.errors.points, status?.target ?? null));
     if (!status) return;
-    write('Sample spacing', `${shown(status.spacing)} px${picture?.final ? ', final' : ''}`);
-    write('Converged', `${(Math.min(Math.max(status.converged, 0), 1) * 100).toFixed(0)} %`);
-    write('Estimated error', status.estimatedError === null ? '–' : `${shown(status.estimatedError, 3)} / 255`);
-    write('Rays', `${Math.round(status.rays).toLocaleString('en')} in ${shown(status.seconds, 3)} s`);
-    write('Epoch', String(status.epoch));
-    write('Features', status.features.join(', ') || 'none');
-    write('Kernel', status.kernel || '–');
+    for (const [name, value] of factsOf(status)) write(name, value);
     ranks.show(status.ranks);
   };
   session.changed.listen((topic) => { if (topic === 'status' || topic === 'connection') update(); });
   window.setInterval(update, 500);
+  const plot = (spark: HTMLElement | SVGElement, caption: string): HTMLElement =>
+    el('div', { class: 'spark-frame' }, spark, el('span', { class: 'caption' }, caption));
   return [
-    section('Progress', false, el('div', { class: 'spark-frame' }, spark.element,
-      el('span', { class: 'caption' }, 'Latency of the last inputs')), facts),
+    section('Progress', false, plot(errors.element, 'Estimated error since the last input, logarithmic'),
+      facts, plot(latency.element, 'Latency of the last inputs')),
     section('Ranks', false, ranks.element),
   ];
-}
-
-function sparkline(): { element: SVGSVGElement; show: (values: readonly number[]) => void } {
-  const line = svg('path', { class: 'spark' });
-  const top = svg('text', { x: '99%', y: 11, 'text-anchor': 'end' });
-  const element = svg('svg', { viewBox: `0 0 ${kSparkWidth} ${kSparkHeight}`, preserveAspectRatio: 'none', class: 'sparkline', 'aria-hidden': 'true' }, line);
-  const frame = svg('svg', { class: 'spark-box', height: kSparkHeight, 'aria-hidden': 'true' }, element, top);
-  return {
-    element: frame,
-    show: (values) => {
-      const most = Math.max(1, ...values);
-      const points = values.map((value, i) =>
-        `${((i + 0.5) * kSparkWidth / Math.max(values.length, 30)).toFixed(1)} ${(kSparkHeight - 2 - (value / most) * (kSparkHeight - 4)).toFixed(1)}`);
-      set(line, { d: points.length > 1 ? `M${points.join('L')}` : '' });
-      top.textContent = values.length > 1 ? `${most.toFixed(0)} ms` : '';
-    },
-  };
 }
 
 function rankTable(): { element: HTMLElement; show: (ranks: readonly RankStatus[]) => void } {
