@@ -33,12 +33,8 @@ FrameCaster::FrameCaster(ImageSize size, int threads) : size_(size), threads_(th
   const TileGrid grid = TileGrid::squares(size, kTile);
   for (std::uint32_t id = 0; id < grid.count(); ++id) {
     const PixelRect rect = grid.rect({id});
-    for (const SampleOffset offset :
-         new_samples({rect.width, rect.height}, kNoLevel, kPixelLevel)) {
-      // Those that a tile repeats of its neighbours are theirs.
-      if (offset.x < rect.width && offset.y < rect.height)
-        positions_.push_back(position_of(rect, offset));
-    }
+    for (const SampleOffset offset : grid_places({rect.width, rect.height}, 1))
+      positions_.push_back(position_of(rect, offset));
     tile_ends_.push_back(positions_.size());
   }
   samples_.resize(positions_.size());
