@@ -3,7 +3,6 @@
 
 #include <map>
 
-#include "bench/motion/playback.h"
 #include "bench/motion/refined_view.h"
 #include "common/tile/update_pattern.h"
 #include "compositor/aged_samples.h"
@@ -63,10 +62,12 @@ class PartialUpdating : public MotionMethod {
     if (is_still(newest)) return {kIdleSeconds, {}};
     WorkDone done;
     done.seconds = cast_part(newest);
-    // A display sees no more; the pictures between would only cost.
-    if (now >= next_picture_) {
-      next_picture_ = now + 1 / kDisplaysPerSecond;
-      done.shown = picture(newest, now, done.seconds);
+    cast_seconds_ += done.seconds;
+    // No more than half of the time goes into pictures.
+    if (cast_seconds_ >= picture_seconds_) {
+      picture_seconds_ = cast_seconds_ = 0;
+      done.shown = picture(newest, now, picture_seconds_);
+      done.seconds += picture_seconds_;
       settled_ = parts_of_newest_ >= parts_of(update_);
     }
     return done;
@@ -115,7 +116,8 @@ class PartialUpdating : public MotionMethod {
   std::uint32_t epoch_ = 0;
   std::uint32_t frame_ = 0;
   std::uint32_t parts_of_newest_ = 0;
-  double next_picture_ = 0;
+  double cast_seconds_ = 0;     ///< since the last picture
+  double picture_seconds_ = 0;  ///< that it took
   bool settled_ = false;
 };
 

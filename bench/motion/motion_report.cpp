@@ -75,7 +75,7 @@ std::string motion_text(const MotionReport& report) {
   std::string text = fmt::format("Error while the camera moves: {}, {}, {} threads, {}\n",
                                  report.scene, subtitle_of(report), report.threads, report.kernel);
   for (const auto& [name, about] : report.paths) text += fmt::format("  {}: {}\n", name, about);
-  text += "\n" + as_text(motion_table(report));
+  text += fmt::format("\n{}", as_text(motion_table(report)));
   for (const std::string& note : report.notes) text += fmt::format("\n{}\n", note);
   return text;
 }
