@@ -74,29 +74,41 @@ std::uint32_t part_of_pixel(int x, int y, Update update) {
 
 int blocks_across(int pixels) { return (pixels + kFramelessBlock - 1) / kFramelessBlock; }
 
+/// Calls visit(x, y) for each cell of a rectangle that begins at 0, in blocks.
+template <class Visit>
+void in_blocks(int width, int height, int block_width, int block_height, Visit visit) {
+  for (int v = 0; v < height; v += block_height)
+    for (int u = 0; u < width; u += block_width)
+      for (int y = v; y < std::min(v + block_height, height); ++y)
+        for (int x = u; x < std::min(u + block_width, width); ++x) visit(x, y);
+}
+
 std::vector<UpdatePlace> pixels_of(const PixelRect& rect, Update update, std::uint32_t part) {
   std::vector<UpdatePlace> places;
-  std::uint32_t index = 0;
-  for (int y = rect.y; y < rect.y + rect.height; ++y)
-    for (int x = rect.x; x < rect.x + rect.width; ++x, ++index)
-      if (part_of_pixel(x, y, update) == part)
-        places.push_back({index, {static_cast<float>(x) + 0.5F, static_cast<float>(y) + 0.5F}});
+  // As many pixels of a part as a packet has rays: 16.
+  const int block_width = update == Update::kAll ? 4 : 8;
+  const int block_height = update == Update::kQuarter ? 8 : 4;
+  in_blocks(rect.width, rect.height, block_width, block_height, [&](int x, int y) {
+    if (part_of_pixel(rect.x + x, rect.y + y, update) != part) return;
+    places.push_back(
+        {static_cast<std::uint32_t>(y * rect.width + x),
+         {static_cast<float>(rect.x + x) + 0.5F, static_cast<float>(rect.y + y) + 0.5F}});
+  });
   return places;
 }
 
 std::vector<UpdatePlace> block_samples_of(const PixelRect& rect, std::uint32_t part) {
   std::vector<UpdatePlace> places;
   const auto& pattern = frameless_pattern();
-  std::uint32_t first = 0;
-  for (int y = rect.y; y < rect.y + rect.height; y += kFramelessBlock)
-    for (int x = rect.x; x < rect.x + rect.width; x += kFramelessBlock) {
-      const std::uint32_t number =
-          (first_sample(x / kFramelessBlock, y / kFramelessBlock) + part) % kFramelessSamples;
-      const PixelPosition in_block = pattern[number];
-      places.push_back({first + number,
-                        {static_cast<float>(x) + in_block.x, static_cast<float>(y) + in_block.y}});
-      first += kFramelessSamples;
-    }
+  const int across = blocks_across(rect.width);
+  in_blocks(across, blocks_across(rect.height), 4, 4, [&](int x, int y) {
+    const int first_x = rect.x / kFramelessBlock + x, first_y = rect.y / kFramelessBlock + y;
+    const std::uint32_t number = (first_sample(first_x, first_y) + part) % kFramelessSamples;
+    const auto block = static_cast<std::uint32_t>(y * across + x);
+    places.push_back({block * kFramelessSamples + number,
+                      {static_cast<float>(rect.x + kFramelessBlock * x) + pattern[number].x,
+                       static_cast<float>(rect.y + kFramelessBlock * y) + pattern[number].y}});
+  });
   return places;
 }
 

@@ -36,9 +36,10 @@ struct UpdatePlace {
 /// row, those at the right and lower edges whole, and each one's samples in the pattern's order.
 std::uint32_t update_places(const PixelRect& rect, Update update);
 
-/// The samples of a part. A rectangle that lies on multiples of kFramelessBlock, as tiles do, has
-/// the same ones whether it is asked for alone or as part of a larger one. Blocks begin the pattern
-/// at different samples, so that no grid is seen.
+/// The samples of a part, in blocks of 16 neighbours for the sake of coherent packets. A rectangle
+/// that lies on multiples of kFramelessBlock, as tiles do, has the same ones whether it is asked
+/// for alone or as part of a larger one. Blocks begin the pattern at different samples, so that no
+/// grid is seen.
 std::vector<UpdatePlace> places_of(const PixelRect& rect, Update update, std::uint32_t part);
 
 /// The part that a place belongs to.
