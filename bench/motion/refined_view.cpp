@@ -22,7 +22,7 @@ RefinedView::RefinedView(const MotionScene& scene, const Camera& camera, double 
 RefinedView::Tile RefinedView::tile_of(const PixelRect& rect, bool with_surfaces) const {
   const int stride = places_along(rect.width), rows = places_along(rect.height);
   const auto places = static_cast<std::size_t>(stride * rows);
-  const Appearance appearance{scene_.image.background, scene_.image.color_space};
+  const Appearance appearance = appearance_of(scene_.image.background, scene_.image.color_space);
   return {rect,
           TileRefinement({rect, Refinement{}, appearance, with_surfaces}),
           stride,
