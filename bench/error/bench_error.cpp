@@ -5,17 +5,15 @@
 
 #include <algorithm>
 
+#include "bench/error/gnuplot.h"
 #include "bench/error/machine.h"
 #include "bench/error/own_measurements.h"
 #include "bench/error/peer_measurements.h"
 #include "bench/error/plots.h"
-#include "common/image/whole_file.h"
 #include "worker/kernels/kernel_table.h"
 
 namespace goldthread::bench {
 namespace {
-
-constexpr std::chrono::seconds kPlotPatience{60};
 
 Report report_head(const Subject& subject, const ErrorBenchSettings& settings) {
   const VolumeInfo& info = subject.volume->info();
@@ -108,24 +106,6 @@ void note_unconverged(Report& report) {
           "the reference ({}) moves by {}/255 when its substeps are doubled, more than a tenth of "
           "the least error measured against it",
           name_of(row.look), number(row.doubled)));
-  }
-}
-
-void write_text(const std::filesystem::path& file, const std::string& text) {
-  write_whole_file(file, {reinterpret_cast<const unsigned char*>(text.data()), text.size()});
-}
-
-/// gnuplot, in the report's folder. Why there is no plot, or nothing.
-std::string draw(const Plot& plot, const std::filesystem::path& folder) {
-  if (plot.script.empty()) return {};
-  const std::string script = plot.name + ".gp";
-  write_text(folder / script, plot.script);
-  try {
-    ChildProcess gnuplot({"env", "-C", folder.string(), "gnuplot", script}, folder / "gnuplot.log");
-    gnuplot.wait(kPlotPatience);
-    return {};
-  } catch (const PeerFailure& failure) {
-    return failure.what();
   }
 }
 

@@ -7,6 +7,8 @@
 #include <limits>
 #include <utility>
 
+#include "bench/error/gnuplot.h"
+
 namespace goldthread::bench {
 namespace {
 
@@ -46,16 +48,6 @@ std::string style_of(const std::string& program, Look look) {
     return fmt::format("with linespoints lc rgb '{}' lw 1.2 dt 2 pt {} ps 1", color_of(look),
                        point_of(look) - 1);
   return "with points lc rgb 'black' pt 3 ps 1.6 lw 1.6";
-}
-
-/// Text between gnuplot's single quotes.
-std::string quoted(const std::string& text) {
-  std::string result = "'";
-  for (const char c : text) {
-    if (c == '\'') result += '\'';
-    result += c == '\n' ? ' ' : c;
-  }
-  return result + "'";
 }
 
 /// Errors at roundoff are drawn here, or they would press all others into a corner.
@@ -129,24 +121,6 @@ std::string plot_command(const std::vector<Curve>& curves) {
   return text + "\n";
 }
 
-/// Everything twice: as SVG and as PNG.
-std::string on_both_terminals(const std::string& name, const std::string& command) {
-  return fmt::format(
-      "set terminal svg size 880,560 font 'sans,13' linewidth 1.3 background 'white'\n"
-      "set output '{0}.svg'\n{1}"
-      "set terminal pngcairo size 1760,1120 font 'sans,24' linewidth 2.6 pointscale 1.8\n"
-      "set output '{0}.png'\n{1}"
-      "unset output\n",
-      name, command);
-}
-
-constexpr const char* kFrame =
-    "set encoding utf8\n"
-    "set border 3 lc rgb '#444444'\n"
-    "set tics nomirror out textcolor rgb '#222222'\n"
-    "set grid xtics ytics lt 1 lc rgb '#dddddd' lw 0.5\n"
-    "set key outside right center Left reverse samplen 2 spacing 1.25\n";
-
 constexpr const char* kLogLog =
     "set logscale xy\n"
     "set format y '%g'\n"
@@ -156,10 +130,6 @@ constexpr const char* kLogLog =
 std::string subtitle_of(const Report& report) {
   return fmt::format("{}×{} pixels, {} threads", report.size.width, report.size.height,
                      report.threads);
-}
-
-std::string titled(const std::string& title, const std::string& subtitle) {
-  return "set title " + quoted(title + " (" + subtitle + ")") + " noenhanced\n";
 }
 
 /// The curves' extent along x, with a little room.
@@ -178,7 +148,7 @@ std::string error_time(const Report& report) {
   std::vector<Curve> curves = curves_of(report, time_and_error, true);
   if (curves.empty()) return {};
   if (Curve marks = default_marks(report); !marks.points.empty()) curves.push_back(marks);
-  return kFrame + std::string(kLogLog) +
+  return plot_frame() + std::string(kLogLog) +
          titled("Error against time", subtitle_of(report) + ", " + report.instruction_set) +
          "set xtics (1, 2, 5, 10, 20, 50, 100, 200, 500, 1000, 2000, 5000, 10000)\n"
          "set xlabel 'median time of a frame in ms'\n" +
@@ -193,7 +163,7 @@ std::string error_step(const Report& report) {
   Curve guide{"second order", "with lines lc rgb '#888888' dt 3 lw 1.4", {}};
   for (const double h : {1.0, 1 / 16.0}) guide.points.emplace_back(step * h, 1.6 * error * h * h);
   curves.push_back(guide);
-  return kFrame + std::string(kLogLog) +
+  return plot_frame() + std::string(kLogLog) +
          titled("Error against step", subtitle_of(report) + ", " + report.instruction_set) +
          "set xtics (0.0625, 0.125, 0.25, 0.5, 1, 2, 4)\nset xlabel 'step in voxels'\n" +
          x_range(curves) + data_blocks(curves) +
@@ -218,7 +188,7 @@ std::string samples_per_second(const Report& report) {
     command += fmt::format("{}$bars using {}:xtic(1) title columnheader lc rgb '{}'",
                            column > 2 ? ", \\\n     " : "", column,
                            column == 2 ? "#999999" : color_of(kLooks[std::size_t(column - 3)]));
-  return kFrame + titled("Samples per second", subtitle_of(report)) +
+  return plot_frame() + titled("Samples per second", subtitle_of(report)) +
          "set xtics noenhanced\nset style data histograms\nset style histogram clustered gap 1.5\n"
          "set style fill solid 0.9 noborder\nset boxwidth 0.92\nset yrange [0:*]\n"
          "unset grid\nset grid ytics lt 1 lc rgb '#dddddd' lw 0.5\n"

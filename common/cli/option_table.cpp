@@ -242,6 +242,13 @@ Outcome apply_instruction_sets(Options& options, const std::string& text) {
                            options.bench.all_instruction_sets);
 }
 
+Outcome apply_full_frame(Options& options, const std::string& text) {
+  double milliseconds = 0;
+  Outcome bad = read_real(text, 0.01, 1e5, milliseconds);
+  if (!bad) options.bench.full_frame_ms = milliseconds;
+  return bad;
+}
+
 template <class Text>
 Outcome keep_text(const std::string& text, Text& value) {
   if (text.empty()) return BadValue{"is empty", "give a value"};
@@ -315,6 +322,9 @@ constexpr OptionRow kTable[] = {
      apply_no_peers},
     {"instruction-sets", "--instruction-sets", "WHICH", kMeasuring,
      "best, or all that this machine has [best]", kBenches, apply_instruction_sets},
+    {"full-frame", "--full-frame", "MS", kMeasuring,
+     "Motion on a machine that takes MS for a ray in each pixel [as this one does]", kBenches,
+     apply_full_frame},
 };
 
 }  // namespace
@@ -322,7 +332,8 @@ constexpr OptionRow kTable[] = {
 std::span<const OptionRow> option_table() { return kTable; }
 
 bool is_bench_subject(std::string_view name) {
-  constexpr std::array<std::string_view, 4> kSubjects = {"error", "throughput", "balance", "scale"};
+  constexpr std::array<std::string_view, 5> kSubjects = {"error", "motion", "throughput", "balance",
+                                                         "scale"};
   return std::find(kSubjects.begin(), kSubjects.end(), name) != kSubjects.end();
 }
 

@@ -29,12 +29,13 @@ struct Orbit {
 
 /// What `bench` alone takes.
 struct BenchOptions {
-  std::string subject;         ///< "error"
+  std::string subject;         ///< "error" or "motion"
   std::optional<int> repeats;  ///< frames of each method
   std::optional<int> stride;   ///< the reference takes every stride-th pixel in both directions
   bool quick = false;          ///< fewer of everything
   bool peers = true;
   bool all_instruction_sets = false;
+  std::optional<double> full_frame_ms;  ///< costs in motion are scaled to this; absent: as they are
 };
 
 struct Options {

@@ -8,6 +8,7 @@
 #include <memory>
 
 #include "bench/error/bench_error.h"
+#include "bench/motion/bench_motion.h"
 #include "common/base/cores.h"
 #include "common/image/whole_file.h"
 #include "common/scene/scene_file.h"
@@ -30,9 +31,23 @@ std::filesystem::path report_folder(const std::string& name) {
   return folder;
 }
 
+/// The default head in motion: as large as a full frame can follow.
+constexpr ImageSize kMotionSize{256, 256};
+
+bool is_motion(const Options& options) { return options.bench.subject == "motion"; }
+
+std::string scene_name(const Options& options) {
+  return options.input.empty() ? "default head" : options.input;
+}
+
+int threads_of(const Options& options) {
+  return options.threads.value_or(static_cast<int>(usable_cores()));
+}
+
 bench::Subject subject_of(const Options& options) {
   const bool is_default = options.input.empty();
   Scene scene = is_default ? bench::default_scene() : value_or_throw(read_scene(options.input));
+  if (is_default && is_motion(options)) scene.image.size = kMotionSize;
   if (options.size) scene.image.size = *options.size;
   return value_or_throw(bench::load_subject(std::move(scene), is_default));
 }
@@ -52,14 +67,12 @@ class Phases {
   std::unique_ptr<Progress> progress_;
 };
 
-}  // namespace
-
-int run_bench(const Options& options) {
+int run_error(const Options& options) {
   bench::ErrorBenchSettings settings;
   settings.folder = report_folder(options.output);
   settings.program = std::filesystem::read_symlink("/proc/self/exe");
-  settings.scene_name = options.input.empty() ? "default head" : options.input;
-  settings.threads = options.threads.value_or(static_cast<int>(usable_cores()));
+  settings.scene_name = scene_name(options);
+  settings.threads = threads_of(options);
   settings.quick = options.bench.quick;
   settings.repeats = options.bench.repeats.value_or(settings.quick ? 3 : 9);
   settings.stride = options.bench.stride.value_or(settings.quick ? 16 : 4);
@@ -77,6 +90,33 @@ int run_bench(const Options& options) {
   std::fputs(bench::report_text(report).c_str(), stdout);
   spdlog::info("bench: report.json, report.md and plots are in {}", settings.folder.string());
   return 0;
+}
+
+int run_motion(const Options& options) {
+  const std::filesystem::path folder = report_folder(options.output);
+  bench::MotionBenchSettings settings;
+  settings.scene_name = scene_name(options);
+  settings.threads = threads_of(options);
+  settings.quick = options.bench.quick;
+  if (options.bench.full_frame_ms)
+    settings.full_frame_seconds = 1e-3 * *options.bench.full_frame_ms;
+  Phases phases;
+  settings.progress = [&](const std::string& what, double fraction) {
+    phases.update(what, fraction);
+  };
+
+  bench::MotionReport report = bench::run_motion_bench(subject_of(options), settings);
+  phases.end();
+  bench::write_motion_report(report, folder);
+  std::fputs(bench::motion_text(report).c_str(), stdout);
+  spdlog::info("bench: report.json and plots are in {}", folder.string());
+  return 0;
+}
+
+}  // namespace
+
+int run_bench(const Options& options) {
+  return is_motion(options) ? run_motion(options) : run_error(options);
 }
 
 }  // namespace goldthread

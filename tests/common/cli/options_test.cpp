@@ -307,10 +307,11 @@ TEST(CommandLine, WhatIsStillToComeIsRefusedByName) {
             "--data: data in slabs is not in this version (use --data replicated)");
   for (const std::string subject : {"throughput", "balance", "scale"}) {
     EXPECT_EQ(refusal({"bench", subject, "-o", "dir"}),
-              "bench: measuring " + subject + " is not in this version (use bench error)");
+              "bench: measuring " + subject +
+                  " is not in this version (use bench error or bench motion)");
   }
   EXPECT_EQ(refusal({"bench", "x"}),
-            "bench: needs a subject (error, throughput, balance or scale)");
+            "bench: needs a subject (error, motion, throughput, balance or scale)");
 }
 
 TEST(CommandLine, ABenchTakesItsOwnOptionsAndNeedsNoScene) {
@@ -337,6 +338,17 @@ TEST(CommandLine, ABenchTakesItsOwnOptionsAndNeedsNoScene) {
             "b: one input too many (quote a name that has spaces)");
   EXPECT_EQ(refusal({"bench", "error", "-o", "dir", "--port", "1"}),
             "--port: does not apply to bench (leave it out)");
+}
+
+TEST(CommandLine, ABenchOfMotionMayBeOfASlowerMachine) {
+  const Options plain = options({"bench", "motion", "-o", "dir"});
+  EXPECT_EQ(plain.bench.subject, "motion");
+  EXPECT_FALSE(plain.bench.full_frame_ms);
+  EXPECT_EQ(options({"bench", "motion", "-o", "dir", "--full-frame", "100"}).bench.full_frame_ms,
+            100);
+  EXPECT_EQ(
+      refusal({"bench", "motion", "-o", "dir", "--full-frame", "0"}),
+      "--full-frame: \"0\" is not a number from 0.01 to 100000 (give one from 0.01 to 100000)");
 }
 
 TEST(CommandLine, AFlagsVariableIs1Or0) {
