@@ -62,7 +62,15 @@ void CompositorRole::on(const BeginView& message) {
   const Topology topology{compositors_, 1};
   const Band band = band_of(message.grid, topology.compositor_index(post_.rank()), compositors_);
   view_ = message;
-  samples_.emplace(view_->grid, band);
+  if (samples_ && samples_->grid() == view_->grid)
+    samples_->restart();
+  else
+    samples_.emplace(view_->grid, band);
+  if (in_parts()) {
+    if (!aged_ || !aged_->fits(view_->grid, view_->update))
+      aged_.emplace(view_->grid, band, view_->update);
+    aged_->begin_view(view_->epoch, view_->frame);
+  }
   told_step_ = kNoStep;
   tell_step();  // of a band without tiles, which nothing else will
   if (early_.empty() || early_.front().epoch > view_->epoch) return;
@@ -86,7 +94,7 @@ void CompositorRole::on(Samples message) {
 }
 
 void CompositorRole::place(const Samples& message) {
-  if (!samples_->place(message)) {
+  if (!(in_parts() ? aged_->place(message) : samples_->place(message))) {
     throw FatalError({"rank " + std::to_string(post_.rank().value),
                       "was sent samples that do not fit tile " + std::to_string(message.tile.value),
                       "start the same build of goldthread on every host",
@@ -96,14 +104,17 @@ void CompositorRole::place(const Samples& message) {
 }
 
 void CompositorRole::tell_step() {
-  const Step step = samples_->step();
+  const Step parts_step = aged_ && aged_->complete() ? Step{1} : kNoStep;
+  const Step step = in_parts() ? parts_step : samples_->step();
   if (step == told_step_) return;
   told_step_ = step;
   post_.to_master(BandReady{view_->epoch, step});
 }
 
-std::vector<float> CompositorRole::picture(Filter filter, ImageSize size, PixelRect rect) const {
-  auto pixels = reconstruct(*samples_, filter, view_->background);
+std::vector<float> CompositorRole::picture(Filter filter, ImageSize size, PixelRect rect,
+                                           std::span<const ViewMovement> moved) const {
+  auto pixels = in_parts() ? aged_->picture(moved, view_->background)
+                           : reconstruct(*samples_, filter, view_->background);
   const ImageSize image = view_->grid.image;
   const PixelRect band = samples_->rect();
   if (size == image && filter != Filter::kBiquadratic) return pixels;
@@ -116,10 +127,11 @@ void CompositorRole::on(const Present& message) {
   EncodedBand band;
   band.rect = band_of_size(samples_->rect(), view_->grid.image, message.size);
   if (band.rect.height == 0) return;  // less than a row of a smaller picture
-  const auto pixels = picture(message.filter, message.size, band.rect);
+  const auto pixels = picture(message.filter, message.size, band.rect, message.moved);
   const auto rgb = display_rgb8(pixels, view_->color_space);
   const Encoding encoding = message.lossless ? Encoding::kZstdRgb : Encoding::kJpeg;
   band.present = message;
+  band.present.moved.clear();
   band.image = message.size;
   band.encoding = static_cast<std::uint8_t>(encoding);
   band.payload = encode_pixels(rgb, {band.rect.width, band.rect.height}, encoding);
@@ -130,7 +142,7 @@ void CompositorRole::on(const CollectBand& message) {
   if (!view_ || message.epoch != view_->epoch) return;
   BandPicture band{message.epoch, samples_->rect(), {}};
   if (!samples_->tiles().empty()) {
-    const auto pixels = picture(message.filter, view_->grid.image, band.rect);
+    const auto pixels = picture(message.filter, view_->grid.image, band.rect, {});
     band.pixels = Buffer(pixels.size() * sizeof(float));
     std::memcpy(band.pixels.data(), pixels.data(), band.pixels.size());
   }

@@ -10,6 +10,7 @@
 
 #include "common/transport/heartbeat.h"
 #include "common/transport/post.h"
+#include "compositor/aged_band.h"
 #include "compositor/gateway/gateway.h"
 #include "compositor/picture_assembly.h"
 #include "compositor/sample_array.h"
@@ -41,7 +42,9 @@ class CompositorRole {
   void tell_step();
   void keep_early(Samples message);
   /// The band's rows `rect` of a picture of `size`, float RGBA.
-  std::vector<float> picture(Filter filter, ImageSize size, PixelRect rect) const;
+  std::vector<float> picture(Filter filter, ImageSize size, PixelRect rect,
+                             std::span<const ViewMovement> moved) const;
+  bool in_parts() const { return view_->update != Update::kAll; }
   void forward_input();
 
   Post post_;
@@ -50,6 +53,7 @@ class CompositorRole {
   int compositors_ = 1;
   std::optional<BeginView> view_;
   std::optional<SampleArray> samples_;
+  std::optional<AgedBand> aged_;  ///< of views that are updated in parts
   Step told_step_ = kNoStep;
   /// Samples that overtook the BeginView of their epoch, on their way from another rank. All of one
   /// epoch, the newest: it shows that the master has given up the views before.

@@ -19,23 +19,27 @@ void over(const Sample& sample, const Color& background, float* pixel) {
 
 }  // namespace
 
+void write_over(std::span<const Sample> samples, int stride, const PixelRect& rect,
+                const glm::dvec3& background, const PixelRect& band, std::span<float> pixels) {
+  const Color behind{static_cast<float>(background.r), static_cast<float>(background.g),
+                     static_cast<float>(background.b), 0};
+  for (int y = 0; y < rect.height; ++y) {
+    const Sample* row = samples.data() + std::size_t(y) * std::size_t(stride);
+    float* out = pixels.data() + 4 * (std::size_t(rect.y - band.y + y) * std::size_t(band.width) +
+                                      std::size_t(rect.x - band.x));
+    for (int x = 0; x < rect.width; ++x) over(row[x], behind, out + 4 * x);
+  }
+}
+
 std::vector<float> reconstruct(const SampleArray& samples, Filter filter,
                                const glm::dvec3& background) {
   const PixelRect band = samples.rect();
   std::vector<float> pixels(4 * std::size_t(band.width) * std::size_t(band.height));
-  const Color behind{static_cast<float>(background.r), static_cast<float>(background.g),
-                     static_cast<float>(background.b), 0};
   std::vector<Sample> filled;
   for (const TileSamples& tile : samples.tiles()) {
     filled.assign(tile.samples().begin(), tile.samples().end());
     fill_holes({tile.stride(), tile.rows(), filled, tile.known()}, filter);
-    const PixelRect& rect = tile.rect();
-    for (int y = 0; y < rect.height; ++y) {
-      const Sample* row = filled.data() + std::size_t(y) * std::size_t(tile.stride());
-      float* out = pixels.data() + 4 * (std::size_t(rect.y - band.y + y) * std::size_t(band.width) +
-                                        std::size_t(rect.x));
-      for (int x = 0; x < rect.width; ++x) over(row[x], behind, out + 4 * x);
-    }
+    write_over(filled, tile.stride(), tile.rect(), background, band, pixels);
   }
   return pixels;
 }

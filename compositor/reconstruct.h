@@ -6,6 +6,7 @@
 // and nothing else.
 
 #include <glm/glm.hpp>
+#include <span>
 #include <vector>
 
 #include "common/scene/scene.h"
@@ -17,5 +18,9 @@ namespace goldthread {
 /// Tiles without any sample show the background.
 std::vector<float> reconstruct(const SampleArray& samples, Filter filter,
                                const glm::dvec3& background);
+
+/// Puts samples, `stride` in a row, over the background into the pixels of `rect` of a band's picture.
+void write_over(std::span<const Sample> samples, int stride, const PixelRect& rect,
+                const glm::dvec3& background, const PixelRect& band, std::span<float> pixels);
 
 }  // namespace goldthread

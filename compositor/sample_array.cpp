@@ -13,6 +13,12 @@ TileSamples::TileSamples(PixelRect rect)
   known_.resize(places);
 }
 
+void TileSamples::restart() {
+  std::fill(known_.begin(), known_.end(), std::uint8_t{0});
+  step_ = kNoStep;
+  ahead_.clear();
+}
+
 bool TileSamples::place(const Samples& message) {
   const std::size_t count = message.count;
   if (!is_step(message.from, message.to) ||
@@ -58,6 +64,13 @@ SampleArray::SampleArray(const TileGrid& grid, Band band)
   const auto last = static_cast<std::uint32_t>(band.last_row) * columns;
   for (std::uint32_t i = first; i < last; ++i) tiles_.emplace_back(grid.rect({i}));
   at_step_[0] = tiles_.size();
+}
+
+void SampleArray::restart() {
+  for (TileSamples& tile : tiles_) tile.restart();
+  std::fill(at_step_.begin(), at_step_.end(), std::size_t{0});
+  at_step_[0] = tiles_.size();
+  least_ = kNoStep;
 }
 
 bool SampleArray::place(const Samples& message) {

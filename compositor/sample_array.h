@@ -20,6 +20,8 @@ namespace goldthread {
 class TileSamples {
  public:
   explicit TileSamples(PixelRect rect);
+  /// Nothing is there any more.
+  void restart();
 
   const PixelRect& rect() const { return rect_; }
   /// Places in a row, and rows: (multiple of kCoarsestSpacing) + 1.
@@ -50,6 +52,8 @@ class TileSamples {
 class SampleArray {
  public:
   SampleArray(const TileGrid& grid, Band band);
+  /// For another view of the same grid, in the same memory.
+  void restart();
 
   /// False if the tile is not of this band, or TileSamples::place refuses.
   bool place(const Samples& message);

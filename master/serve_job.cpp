@@ -5,6 +5,7 @@
 
 #include "common/scene/camera.h"
 #include "common/scene/scene_edit.h"
+#include "common/tile/update_pattern.h"
 #include "master/report.h"
 #include "master/temporal_error.h"
 
@@ -75,6 +76,7 @@ void ServeJob::say_welcome() {
 /// The golden thread: the step that is repeated for ever. It waits where the picture is to be shown
 /// without loss: what is shown then is a whole step, the same whatever came before.
 void ServeJob::on(const StepCast&) {
+  if (update_ != Update::kAll) return;  // its one step
   const ViewState& view = cluster_.view();
   const double error = rms_error(view.steps.back().quality.squared_error, view.pixels());
   const double wanted = final_error_ ? kWorthShowingFinal * *final_error_ : request_.stop.error;
@@ -187,7 +189,8 @@ FrameState ServeJob::frame_state() const {
   Shown back = back_;
   back.spatial_px = spatial_px();
   state.back = errors_of(back);
-  state.estimated_error = estimated_error(cluster_.view());
+  // What is updated in parts is never finished.
+  state.estimated_error = update_ == Update::kAll ? estimated_error(cluster_.view()) : 255;
   state.target_error = request_.stop.error;
   state.final_error = final_error_;
   state.since_begun = since(cluster_.view().begin);
@@ -198,6 +201,7 @@ FrameState ServeJob::frame_state() const {
 
 void ServeJob::act() {
   if (!cine_.idle() && !waiting_.any) return advance_cine();
+  if (update_ != Update::kAll && !is_moving()) want_view(false);
   if (reshow_ && audience_ready_ && has_picture() && front_) {
     show(final_error_.has_value());
     reshow_ = false;
@@ -244,13 +248,25 @@ void ServeJob::cast(const Camera& camera) {
   back_ = {camera, edits_, {}, kLargestSpatialErrorPx};
   Scene scene = scene_;
   scene.camera = camera;
-  const Update update = is_moving() && cine_.idle() ? request_.display.update : Update::kAll;
+  update_ = is_moving() && cine_.idle() ? request_.display.update : Update::kAll;
   // From a crude picture on: what is watched becomes better step by step.
   Refinement refinement = refinement_of(request_.stop);
   refinement.first_threshold = Refinement{}.first_threshold;
   cluster_.begin_view(scene,
-                      {request_.grid(scene_.image.size), refinement, update, moving_frame_++});
+                      {request_.grid(scene_.image.size), refinement, update_, moving_frame_++});
   back_.epoch = cluster_.view().epoch;
+  if (update_ == Update::kAll) return;
+  parts_.push_back(back_);
+  if (parts_.size() > parts_of(update_)) parts_.pop_front();
+}
+
+std::vector<ViewMovement> ServeJob::movements() const {
+  std::vector<ViewMovement> movements;
+  for (const Shown& part : parts_)
+    movements.push_back(
+        {part.epoch, static_cast<float>(temporal_error_px(cluster_.visible_points(), part.camera,
+                                                          back_.camera, scene_.image.size))});
+  return movements;
 }
 
 void ServeJob::show(bool final) {
@@ -264,7 +280,10 @@ void ServeJob::show(bool final) {
   present.size = covers_size() || reshow_ ? scene_.image.size : view.grid.image;
   present.lossless = final;
   present.final = final;
-  present.estimated_error = static_cast<float>(estimated_error(view));
+  if (update_ == Update::kAll)
+    present.estimated_error = static_cast<float>(estimated_error(view));
+  else
+    present.moved = movements();
   if (const auto frame = cine_.frame()) {
     present.cine_frame = static_cast<std::uint8_t>(*frame + 1);
     present.cine_frames = static_cast<std::uint8_t>(cine_.frames());

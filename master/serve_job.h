@@ -82,6 +82,7 @@ class ServeJob {
   FrameState frame_state() const;
   PictureErrors errors_of(const Shown& picture) const;
   double spatial_px() const;
+  std::vector<ViewMovement> movements() const;
   void to_pages(ToCompositor message);
   void say_welcome();
 
@@ -101,6 +102,8 @@ class ServeJob {
   Shown back_;                  ///< what the view being cast shows
   std::optional<Shown> front_;  ///< what the pages show
   std::optional<double> final_error_;
+  Update update_ = Update::kAll;        ///< of the view being cast
+  std::deque<Shown> parts_;             ///< views whose samples an update keeps, the newest last
   bool paused_ = false;  ///< the next step is opened once the picture has been shown
   bool audience_ready_ = false;
   bool reshow_ = false;  ///< the same samples are wanted in another form

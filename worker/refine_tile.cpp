@@ -5,6 +5,8 @@
 #include <cstring>
 #include <utility>
 
+#include "common/tile/update_pattern.h"
+
 namespace goldthread {
 namespace {
 
@@ -27,6 +29,21 @@ Samples pack(const TileRefinement& tile, const RenderTile& quantum,
   return message;
 }
 
+/// A view that is updated in parts has one step: the part's samples.
+bool cast_part(const CastView& view, const RenderTile& quantum, const TileRefinement::Cast& cast,
+               Samples& message) {
+  std::vector<PixelPosition> positions;
+  for (const UpdatePlace& place :
+       places_of(view.grid.rect(quantum.tile), view.update, view.part))
+    positions.push_back(place.position);
+  message = {quantum.epoch, quantum.tile, quantum.from, quantum.to,
+             static_cast<std::uint32_t>(positions.size()),
+             Buffer(positions.size() * sizeof(Sample))};
+  std::vector<std::uint32_t> surfaces(positions.size());
+  const std::span samples(reinterpret_cast<Sample*>(message.packed.data()), positions.size());
+  return cast(positions, samples, surfaces);
+}
+
 }  // namespace
 
 std::optional<RefinedTile> refine_tile(const CastView& view, const RenderTile& quantum,
@@ -44,6 +61,11 @@ std::optional<RefinedTile> refine_tile(const CastView& view, const RenderTile& q
     }
     return true;
   };
+  if (view.update != Update::kAll) {
+    if (!cast_part(view, quantum, cast, result.samples)) return {};
+    result.tile = std::move(tile);
+    return result;
+  }
   if (!tile)
     tile = std::make_unique<TileRefinement>(task_of(view, quantum.tile));
   else if (tile->step() != quantum.from)

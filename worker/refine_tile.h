@@ -21,7 +21,7 @@ struct RefinedTile {
   Samples samples;  ///< what the quantum changed, ready to be sent
   CastCounts counts;  ///< of the quantum's own steps
   TileQuality quality;
-  std::unique_ptr<TileRefinement> tile;  ///< to go on with
+  std::unique_ptr<TileRefinement> tile;  ///< to go on with; null if there is nothing to keep
 };
 
 /// Takes a tile to quantum.to. `tile` is what this worker holds of it, or null: then, and if it does

@@ -8,6 +8,7 @@
 #include "common/base/cores.h"
 #include "common/protocol/topology.h"
 #include "common/scene/scene_file.h"
+#include "common/tile/update_pattern.h"
 #include "common/transport/shared_memory.h"
 #include "common/volume/build_volume.h"
 #include "common/volume/volume_io.h"
@@ -124,6 +125,8 @@ void WorkerRole::on(const BeginView& message) {
       CastView{message.epoch,
                message.grid,
                message.refinement,
+               message.update,
+               message.frame % parts_of(message.update),
                appearance_of(message.background, message.color_space),
                make_source_(scene_, message.camera, message.grid.image)}));
 }

@@ -296,7 +296,8 @@ using ToWorker = std::variant<BeginSession, LoadVolume, MapVolume, CommitScene, 
 // ------------------------------------------------------------------------------
 
 /// What changed in a tile by one quantum: `count` colours (Sample), then the place of each
-/// (SampleOffset), packed.
+/// (SampleOffset), packed; of a view that is updated in parts the colours alone, in the order of
+/// places_of().
 struct Samples {
   Epoch epoch;
   TileId tile;
@@ -306,6 +307,14 @@ struct Samples {
   Buffer packed;
   GOLDTHREAD_MESSAGE(Samples, &Samples::epoch, &Samples::tile, &Samples::from, &Samples::to,
                      &Samples::count, &Samples::packed)
+};
+/// How far the picture has moved since an older view, by the newest camera.
+struct ViewMovement {
+  Epoch epoch;
+  float pixels = 0;
+  static constexpr auto fields() {
+    return std::tuple{&ViewMovement::epoch, &ViewMovement::pixels};
+  }
 };
 /// Encode the band as it is and send it to the gateway as part of `picture`.
 struct Present {
@@ -320,10 +329,11 @@ struct Present {
   std::uint8_t cine_frame = 0;   ///< 1 … cine_frames: a frame of the cine loop
   std::uint8_t cine_frames = 0;  ///< 0: no cine loop
   float estimated_error = -1;    ///< RMS in 1/255; negative: unknown
+  std::vector<ViewMovement> moved;  ///< of the views whose samples an update keeps
   GOLDTHREAD_MESSAGE(Present, &Present::epoch, &Present::picture, &Present::viewer,
                      &Present::serial, &Present::filter, &Present::size, &Present::lossless,
                      &Present::final, &Present::cine_frame, &Present::cine_frames,
-                     &Present::estimated_error)
+                     &Present::estimated_error, &Present::moved)
 };
 /// Send the band's finished pixels to the master.
 struct CollectBand {

@@ -1,0 +1,65 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "compositor/aged_band.h"
+
+#include <algorithm>
+#include <cstring>
+
+#include "common/tile/update_pattern.h"
+#include "compositor/reconstruct.h"
+
+namespace goldthread {
+namespace {
+
+/// Of a view that nobody remembers: nothing of it is seen where there is anything else.
+constexpr double kFarAway = 1e3;
+
+}  // namespace
+
+AgedBand::AgedBand(const TileGrid& grid, Band band, Update update)
+    : grid_(grid), band_(band), update_(update), rect_(band_rect(grid, band)) {
+  const auto columns = static_cast<std::uint32_t>(grid.columns());
+  for (auto i = static_cast<std::uint32_t>(band.first_row) * columns;
+       i < static_cast<std::uint32_t>(band.last_row) * columns; ++i)
+    tiles_.emplace_back(grid.rect({i}), update);
+  placed_.resize(tiles_.size());
+}
+
+void AgedBand::begin_view(Epoch epoch, std::uint32_t frame) {
+  epoch_ = epoch;
+  part_ = frame % parts_of(update_);
+  missing_ = tiles_.size();
+}
+
+bool AgedBand::place(const Samples& message) {
+  const auto first = static_cast<std::uint32_t>(band_.first_row * grid_.columns());
+  if (message.tile.value < first || message.tile.value - first >= tiles_.size() ||
+      message.packed.size() / sizeof(Sample) != message.count ||
+      message.packed.size() % sizeof(Sample) != 0)
+    return false;
+  const std::size_t tile = message.tile.value - first;
+  std::vector<Sample> samples(message.count);
+  if (!samples.empty())
+    std::memcpy(samples.data(), message.packed.data(), message.packed.size());
+  if (!tiles_[tile].put(message.epoch, part_, samples)) return false;
+  if (placed_[tile] != epoch_) --missing_;
+  placed_[tile] = epoch_;
+  return true;
+}
+
+std::vector<float> AgedBand::picture(std::span<const ViewMovement> moved,
+                                     const glm::dvec3& background) const {
+  const auto moved_px = [&](Epoch view) {
+    if (view == epoch_) return 0.0;
+    const auto found = std::find_if(moved.begin(), moved.end(),
+                                    [&](const ViewMovement& known) { return known.epoch == view; });
+    return found == moved.end() ? kFarAway : double(found->pixels);
+  };
+  std::vector<float> pixels(4 * std::size_t(rect_.width) * std::size_t(rect_.height));
+  for (const AgedSamples& tile : tiles_) {
+    const auto samples = tile.picture(moved_px);
+    write_over(samples, tile.rect().width, tile.rect(), background, rect_, pixels);
+  }
+  return pixels;
+}
+
+}  // namespace goldthread
