@@ -7,7 +7,7 @@ import { existsSync } from 'node:fs';
 import test from 'node:test';
 import { headScene, headVolume, inScratch, run, runCommand, runRanks } from './support/program.mjs';
 import { lit, sceneOf, surfaces, writeJson, writeNrrd } from './support/data.mjs';
-import { covered, readPng } from './support/picture.mjs';
+import { covered, difference, readPng } from './support/picture.mjs';
 
 const [transport, ranksText] = process.argv.slice(2);
 const ranks = Number(ranksText ?? 0);
@@ -22,15 +22,22 @@ const scenes = {
   'mip': writeJson('mip.json', sceneOf(volume, { mode: 'mip' })),
 };
 
-/** The pictures of a scene as floats and as bytes, made once by one worker with one thread. */
+// Which samples a picture holds depends on its tiles where they are chosen: then only pictures of the same
+// tiles can be equal.
+const everyPixel = ['--sampling', 'every-pixel'];
+
+/**
+ * The pictures of a scene as floats and as bytes, made once by one worker with one thread; `options` are
+ * those that a picture depends on.
+ */
 const references = new Map();
-async function reference(scene, size) {
-  const key = `${scene} ${size}`;
+async function reference(scene, size, options = []) {
+  const key = [scene, size, ...options].join(' ');
   if (!references.has(key)) {
     const name = inScratch(`reference-${references.size}`);
     references.set(key, name);
     for (const extension of ['exr', 'png']) {
-      const made = await run(['render', scene, '-o', `${name}.${extension}`, '--size', size, '--threads', '1']);
+      const made = await run(['render', scene, '-o', `${name}.${extension}`, '--size', size, '--threads', '1', ...options]);
       assert.equal(made.status, 0, made.stderr);
     }
     // Two black pictures would be equal too.
@@ -45,11 +52,11 @@ async function differs(a, b) {
 }
 
 let count = 0;
-async function expectEqual(scene, size, options, mpiRanks = 0) {
+async function expectEqual(scene, size, options, { mpiRanks = 0, quality = [] } = {}) {
   const extension = count % 2 === 0 ? 'exr' : 'png';
   const output = inScratch(`picture-${++count}.${extension}`);
-  const args = ['render', scene, '-o', output, '--size', size, ...options];
-  const expected = `${await reference(scene, size)}.${extension}`;
+  const args = ['render', scene, '-o', output, '--size', size, ...options, ...quality];
+  const expected = `${await reference(scene, size, quality)}.${extension}`;
   const made = await (mpiRanks ? runRanks(mpiRanks, args) : run(args));
   assert.equal(made.status, 0, made.stderr);
   if (extension === 'png') assert.ok(readPng(output).rgb.equals(readPng(expected).rgb), made.line);
@@ -77,10 +84,42 @@ if (transport === 'loopback') {
       await expectEqual(scene, '301x197', [...roles(8, 3), '--threads', '1']);
     });
   }
-  test('Tiles of any size and rows give one picture', async () => {
-    for (const tiles of [['--tile', '16'], ['--tile', '32'], ['--tile', '128'], ['--schedule', 'rows']]) {
-      await expectEqual(scenes['surfaces in dvr'], '301x197', [...tiles, ...roles(5, 2)]);
-      await expectEqual(scenes['lit dvr'], '301x197', [...tiles, ...roles(3, 1)]);
+  const tilings = [['--tile', '16'], ['--tile', '32'], ['--tile', '128'], ['--schedule', 'rows']];
+  test('Tiles of any size and rows give one picture of every pixel', async () => {
+    for (const tiles of tilings) {
+      await expectEqual(scenes['surfaces in dvr'], '301x197', [...tiles, ...roles(5, 2)], { quality: everyPixel });
+      await expectEqual(scenes['lit dvr'], '301x197', [...tiles, ...roles(3, 1)], { quality: everyPixel });
+    }
+  });
+  test('Chosen samples of tiles of one size, or rows, give one picture over ranks', async () => {
+    for (const tiles of tilings)
+      await expectEqual(scenes['surfaces in dvr'], '301x197', roles(5, 2), { quality: tiles });
+  });
+  const qualities = {
+    'a large error': ['--error', '4'],
+    'a small error': ['--error', '0.1'],
+    'two samples at most': ['--error', '0.01', '--samples', '2'],
+    'conventional subdivision': ['--sampling', 'subdivision'],
+    'four samples in each pixel': [...everyPixel, '--samples', '4'],
+    'constant blocks': ['--error', '4', '--filter', 'box'],
+    'bicubic filling': ['--error', '4', '--filter', 'bicubic'],
+  };
+  for (const [name, quality] of Object.entries(qualities)) {
+    test(`Ranks agree on a picture of ${name}`, async () => {
+      await expectEqual(scenes['surfaces in dvr'], '301x197', roles(3, 1), { quality });
+      await expectEqual(scenes['surfaces in dvr'], '301x197', [...roles(8, 3), '--threads', '1'], { quality });
+      await expectEqual(scenes['lit dvr'], '301x197', [...roles(6, 1), '--threads', '2'], { quality });
+    });
+  }
+  test('Each way to refine makes a picture of its own, near that of many samples', async () => {
+    const many = readPng(`${await reference(scenes['lit dvr'], '301x197', [...everyPixel, '--samples', '64'])}.png`);
+    const pictures = [['--error', '4'], [], ['--sampling', 'subdivision'], everyPixel, [...everyPixel, '--samples', '4']];
+    const seen = [];
+    for (const quality of pictures) {
+      const picture = readPng(`${await reference(scenes['lit dvr'], '301x197', quality)}.png`);
+      for (const other of seen) assert.ok(!picture.rgb.equals(other.rgb), `${quality}`);
+      assert.ok(difference(picture, many).mean < 1, `${quality}`);
+      seen.push(picture);
     }
   });
   test('One, two and three threads give one picture', async () => {
@@ -90,13 +129,15 @@ if (transport === 'loopback') {
     }
   });
   test('Pictures of a few pixels are right with more ranks than tiles', async () => {
-    for (const size of ['1x1', '3x65', '64x64', '65x2']) {
-      const expected = inScratch(`small-${size}.png`), output = inScratch(`many-${size}.png`);
-      for (const [file, options] of [[expected, []], [output, roles(8, 3)]]) {
-        const made = await run(['render', scenes['lit dvr'], '-o', file, '--size', size, ...options]);
-        assert.equal(made.status, 0, made.stderr);
+    for (const size of ['1x1', '2x2', '3x65', '64x64', '65x2']) {
+      for (const quality of [[], everyPixel]) {
+        const expected = inScratch(`small-${size}.png`), output = inScratch(`many-${size}.png`);
+        for (const [file, options] of [[expected, []], [output, roles(8, 3)]]) {
+          const made = await run(['render', scenes['lit dvr'], '-o', file, '--size', size, ...options, ...quality]);
+          assert.equal(made.status, 0, made.stderr);
+        }
+        assert.deepEqual(readPng(output), readPng(expected), size);
       }
-      assert.deepEqual(readPng(output), readPng(expected), size);
     }
   });
 } else {
@@ -105,15 +146,19 @@ if (transport === 'loopback') {
   compositors.forEach((number, i) => {
     for (const [mode, scene] of [modes[(ranks + i) % 5], modes[(ranks + i + 2) % 5]]) {
       test(`${mode}: mpirun -n ${ranks} with ${number} compositors gives the picture of one worker`, async () => {
-        await expectEqual(scene, '301x197', ['--compositors', String(number), '--threads', '1',
-                                             ...(i === 1 ? ['--tile', '32'] : [])], ranks);
+        await expectEqual(scene, '301x197', ['--compositors', String(number), '--threads', '1'],
+                          { mpiRanks: ranks, quality: i === 1 ? ['--tile', '32'] : [] });
       });
     }
   });
   test(`Rows under mpirun -n ${ranks} give the picture of one worker`, async () => {
-    await expectEqual(scenes['lit dvr'], '157x211', ['--schedule', 'rows', '--threads', '2'], ranks);
+    await expectEqual(scenes['lit dvr'], '157x211', ['--threads', '2'], { mpiRanks: ranks, quality: ['--schedule', 'rows'] });
   });
   test(`The head under mpirun -n ${ranks} is the head of one worker`, { skip: missingHead }, async () => {
-    await expectEqual(headScene, '201x153', [], ranks);
+    await expectEqual(headScene, '201x153', [], { mpiRanks: ranks });
+  });
+  test(`Subdivision and samples of every pixel under mpirun -n ${ranks} are those of one worker`, async () => {
+    for (const quality of [['--sampling', 'subdivision'], [...everyPixel, '--samples', '4']])
+      await expectEqual(scenes['surfaces in dvr'], '157x211', ['--threads', '1'], { mpiRanks: ranks, quality });
   });
 }

@@ -3,12 +3,13 @@
 // Arguments: "process", or "mpi".
 
 import assert from 'node:assert/strict';
-import { existsSync, mkdirSync, readdirSync, rmSync, statSync, truncateSync, writeFileSync } from 'node:fs';
+import { existsSync, mkdirSync, readFileSync, readdirSync, rmSync, statSync, truncateSync, writeFileSync } from 'node:fs';
 import { createServer } from 'node:net';
 import { once } from 'node:events';
 import test from 'node:test';
 import { gzipSync } from 'node:zlib';
-import { errorLines, inScratch, leftOver, program, run, runCommand, runRanks, scratch, start, startRanks } from './support/program.mjs';
+import { errorLines, inScratch, leftOver, processOfRank, program, run, runCommand, runRanks, scratch, start,
+         startRanks, startRecoverable } from './support/program.mjs';
 import { camera, sceneOf, writeJson, writeNrrd } from './support/data.mjs';
 import { covered, readPng } from './support/picture.mjs';
 
@@ -89,6 +90,24 @@ if (mpi) {
   test('Compositors that leave no worker are too many', () => expectUsage(4, ['--compositors', '3'], /too few ranks .* 3 compositors/));
   test('--workers is not for mpirun', () => expectUsage(3, ['--workers', '4'], /--workers: .*mpirun/));
   test('An option that is not there is told by one rank', () => expectUsage(3, ['--wrokers', '4'], /--wrokers/));
+  test('A worker that is killed in the middle of a picture is told of, and changes no bit of it', async () => {
+    const args = (output, step) => ['render', scene, '-o', inScratch(output), '--size', '320x240', '--error', '0.05',
+                                    '--step', step, '--threads', '1'];
+    // A fast machine may be done before there is any progress to tell: then more slowly.
+    let render, step;
+    for (step of ['0.0004', '0.0001', '0.00002']) {
+      render = startRecoverable(4, args('killed.png', step), inScratch('status'), { seconds: 120 });
+      if (await render.until(() => /rendering: \d+ %/.test(render.stderr)).then(() => true, () => false)) break;
+    }
+    process.kill(processOfRank(render, 3), 'SIGKILL');
+    const result = await render.ended;
+    assert.equal(readFileSync(inScratch('status'), 'utf8').trim(), '0', result.stderr);
+    assert.match(result.stderr, /rank 3, a worker, has gone silent/);
+    const whole = await run(args('whole.png', step), { seconds: 120 });
+    assert.equal(whole.status, 0, whole.stderr);
+    assert.ok(readPng(inScratch('killed.png')).rgb.equals(readPng(inScratch('whole.png')).rgb));
+    assert.deepEqual(await leftOver(), []);
+  });
 } else {
   test('A folder without images is bad input', () => {
     mkdirSync(inScratch('folder'), { recursive: true });

@@ -57,11 +57,10 @@ test('A report says what was done, and its numbers agree with each other', async
   const report = await reported('report', '--workers', '2', '--compositors', '2', '--tile', '32');
   const [frame] = report.frames;
   assert.equal(report.frames.length, 1);
-  assert.equal(frame.rays, kPixels);
+  assert.equal(frame.samplesPerPixel, frame.rays / kPixels);
   assert.ok(frame.samples >= frame.rays, `${frame.samples} samples`);
   assert.ok(frame.firstPictureSeconds > 0 && frame.firstPictureSeconds <= frame.seconds);
-  assert.ok(frame.estimatedError >= 0 && frame.estimatedError < 255);
-  assert.equal(frame.spacing, 1);
+  assert.ok(frame.takenSeconds > 0 && frame.takenSeconds <= frame.seconds);
   assert.ok(report.loadSeconds > 0);
   assert.match(report.version, /^\d+\.\d+\.\d+/);
   assert.ok(report.kernel.length > 0 && Array.isArray(report.features));
@@ -69,6 +68,90 @@ test('A report says what was done, and its numbers agree with each other', async
   assert.deepEqual(report.ranks.map(({ rank }) => rank), [0, 1, 2, 3, 4]);
   assert.deepEqual(report.ranks.map(({ role }) => role), ['master', 'compositor', 'compositor', 'worker', 'worker']);
   for (const { host, busySeconds } of report.ranks) assert.ok(host.length > 0 && busySeconds >= 0);
+});
+
+test('The steps of a report lead to the picture', async () => {
+  const { frames: [frame] } = await reported('steps');
+  const { steps } = frame;
+  assert.ok(steps.length >= 3);
+  for (let i = 1; i < steps.length; ++i) {
+    assert.ok(steps[i].rays >= steps[i - 1].rays);
+    assert.ok(steps[i].seconds >= steps[i - 1].seconds);
+  }
+  // Grids of 16 and 8 pixels in tiles of 64 and what is left of 96, with the replicated ones.
+  assert.equal(steps[0].rays, (5 + 3) ** 2);
+  assert.equal(steps[1].rays, (9 + 5) ** 2);
+  const last = steps.at(-1);
+  assert.deepEqual([frame.rays, frame.estimatedError, frame.seconds], [last.rays, last.estimatedError, last.seconds]);
+  assert.equal(frame.firstPictureSeconds, steps[0].seconds);
+});
+
+test('A picture is refined until the error that was asked for, 0.5 unless told otherwise', async () => {
+  const errorOf = async (...options) => (await reported('asked', ...options)).frames[0];
+  for (const [wanted, options] of [[0.5, []], [4, ['--error', '4']], [0.1, ['--error', '0.1']]]) {
+    const { estimatedError, steps } = await errorOf(...options);
+    assert.ok(estimatedError <= wanted, `${estimatedError} of ${wanted}`);
+    // Not a step further, but those that are too coarse to tell.
+    for (const { estimatedError: before } of steps.slice(2, -1)) assert.ok(before > wanted, `${before} of ${wanted}`);
+  }
+  assert.ok((await errorOf('--error', '4')).rays < (await errorOf('--error', '0.1')).rays);
+});
+
+test('The error that was asked for is about what the picture is off by', async () => {
+  await render(scene, 'many.png', '--sampling', 'every-pixel', '--samples', '256');
+  let before = Infinity;
+  for (const error of ['8', '2', '0.5']) {
+    await render(scene, 'some.png', '--error', error);
+    const { mean } = difference(picture('some.png'), picture('many.png'));
+    // The mean is below the root mean square; eight bits round by a quarter on average.
+    assert.ok(mean <= 1.5 * Number(error) + 0.25, `${mean} of ${error}`);
+    assert.ok(mean < before, `${mean} after ${before}`);
+    before = mean;
+  }
+});
+
+test('--samples bounds the samples of a pixel', async () => {
+  const even = async (...options) => (await reported('even', '--sampling', 'every-pixel', ...options)).frames[0];
+  const one = await even(), four = await even('--samples', '4');
+  // Beside one ray in each pixel's centre those around the tiles.
+  const around = one.rays - kPixels;
+  assert.ok(around >= 0 && around < kPixels / 8, `${around}`);
+  assert.equal(four.rays, 4 * kPixels + around);
+  const chosen = async (samples) => (await reported('chosen', '--error', '0.1', '--samples', samples)).frames[0];
+  const [two, many] = [await chosen('2'), await chosen('1024')];
+  assert.ok(two.rays <= 2 * kPixels + around, `${two.rays}`);
+  assert.ok(many.rays > two.rays && many.estimatedError < two.estimatedError);
+});
+
+test('Every pixel of the smallest pictures has its rays', async () => {
+  // Around so few pixels there are more rays than in them.
+  for (const [samples, last] of [['1', 3], ['4', 4], ['9', 5]]) {
+    for (const size of ['1x1', '2x2', '17x1']) {
+      const { frames: [{ steps }] } = await reported('few', '--sampling', 'every-pixel', '--samples', samples, '--size', size);
+      assert.equal(steps.length, last, `${size} with ${samples}`);
+    }
+  }
+});
+
+test('Every filter and kind of sampling makes a picture', async () => {
+  await render(scene, 'exact.png', '--sampling', 'every-pixel', '--samples', '64');
+  const exact = picture('exact.png');
+  const seen = new Map();
+  for (const filter of ['box', 'bilinear', 'biquadratic', 'piecewise-quadratic', 'bicubic']) {
+    // Coarse enough that there is something to fill in.
+    await render(scene, 'filter.png', '--filter', filter, '--error', '8');
+    const made = picture('filter.png');
+    assert.ok(difference(made, exact).mean < 10, filter);
+    seen.set(filter, made);
+  }
+  // Halfway between two samples the piecewise quadratic filter says what the bilinear one does.
+  assert.deepEqual(difference(seen.get('piecewise-quadratic'), seen.get('bilinear')), kSame);
+  for (const filter of ['box', 'biquadratic', 'bicubic'])
+    assert.ok(difference(seen.get(filter), seen.get('bilinear')).pixels > 0, filter);
+  for (const sampling of ['adaptive', 'subdivision', 'every-pixel']) {
+    await render(scene, 'sampling.png', '--sampling', sampling);
+    assert.ok(difference(picture('sampling.png'), exact).mean < 1, sampling);
+  }
 });
 
 test('The tiles of a report cover the picture once', async () => {
@@ -93,8 +176,9 @@ test('The seconds of the tiles are those that the workers were busy', async () =
 });
 
 test('The bytes of a report hold every sample and every pixel', async () => {
-  const { bytes } = await reported('bytes');
-  assert.ok(bytes.Samples >= 16 * kPixels && bytes.Samples < 32 * kPixels, `${bytes.Samples}`);
+  const { bytes } = await reported('bytes', '--sampling', 'every-pixel');
+  // Colour and place of each.
+  assert.ok(bytes.Samples >= 20 * kPixels && bytes.Samples < 32 * kPixels, `${bytes.Samples}`);
   assert.ok(bytes.BandPicture >= 16 * kPixels, `${bytes.BandPicture}`);
   for (const count of Object.values(bytes)) assert.ok(Number.isInteger(count) && count >= 0);
 });
@@ -136,12 +220,26 @@ for (const { name, turn, move } of [
 }
 
 test('A render whose time is up writes the picture that it has', async () => {
-  const { frames: [frame] } = await reported('hasty', '--size', '1024x1024', '--step', '0.05', '--time', '0.001');
-  assert.ok(frame.spacing > 1, `spacing ${frame.spacing}`);
-  assert.ok(frame.rays < 1024 * 1024);
-  const hasty = picture('hasty.png');
-  assert.equal(hasty.width, 1024);
-  assert.ok(covered(hasty) > 0.05);
+  for (const sampling of ['adaptive', 'every-pixel']) {
+    const { frames: [frame] } = await reported('hasty', '--size', '1024x1024', '--step', '0.05', '--time', '0.001',
+                                               '--error', '0.01', '--sampling', sampling);
+    assert.ok(frame.steps.length >= 1, 'at least the first step');
+    assert.ok(frame.estimatedError > 0.01);
+    assert.ok(frame.rays < 1024 * 1024);
+    const hasty = picture('hasty.png');
+    assert.equal(hasty.width, 1024);
+    assert.ok(covered(hasty) > 0.05);
+  }
+});
+
+test('A render without end but for its time ends in time', async () => {
+  const seconds = 1;
+  const { frames: [frame] } = await reported('timely', '--size', '512x512', '--step', '0.01', '--error', '0.01',
+                                             '--time', String(seconds));
+  assert.ok(frame.estimatedError > 0.01, 'there was something left to do');
+  assert.ok(frame.steps.length >= 2);
+  for (const step of frame.steps) assert.ok(step.seconds < seconds + 1, `${step.seconds}`);
+  assert.ok(covered(picture('timely.png')) > 0.05);
 });
 
 test('info tells size and range on stdout, and nothing else anywhere', async () => {
@@ -155,7 +253,7 @@ test('info tells size and range on stdout, and nothing else anywhere', async () 
 });
 
 test('Progress is told on stderr only', async () => {
-  const args = ['render', scene, '-o', inScratch('never.png'), '--size', '8192x8192', '--step', '0.001'];
+  const args = ['render', scene, '-o', inScratch('never.png'), '--size', '2048x2048', '--step', '0.001', '--error', '0.01'];
   const long = start(args);
   await long.until(() => /rendering: \d+ %/.test(long.stderr));
   long.signal('SIGINT');

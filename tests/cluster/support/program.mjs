@@ -101,6 +101,12 @@ export const start = (args, options) => new Running(program, args, options);
 export const startRanks = (ranks, args, options = {}) =>
   new Running('mpirun', ['--oversubscribe', '--bind-to', 'none', '-n', String(ranks), program, ...args],
               { ...options, env: { ...mpiEnvironment, ...options.env } });
+/** As launch/run does: a rank that dies does not end the others, and the master's status comes back in a file. */
+export const startRecoverable = (ranks, args, statusFile, options = {}) =>
+  new Running('mpirun', ['--enable-recovery', '--oversubscribe', '--bind-to', 'none',
+                         '-n', '1', path.join(sourceDirectory, 'launch/master'), statusFile, program, ...args, ':',
+                         '-n', String(ranks - 1), program, ...args],
+              { ...options, env: { ...mpiEnvironment, ...options.env } });
 
 /** Runs to the end. */
 export const run = (args, options) => start(args, options).ended;
@@ -121,6 +127,15 @@ export async function leftOver() {
     found = running();
   }
   return found;
+}
+
+/** The process that is this rank of a started mpirun. */
+export function processOfRank(mpirun, rank) {
+  for (const child of readFileSync(`/proc/${mpirun.pid}/task/${mpirun.pid}/children`, 'utf8').trim().split(' ')) {
+    const environment = readFileSync(`/proc/${child}/environ`, 'utf8').split('\0');
+    if (environment.includes(`OMPI_COMM_WORLD_RANK=${rank}`)) return Number(child);
+  }
+  throw new Error(`no process is rank ${rank}`);
 }
 
 function running() {
