@@ -4,38 +4,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <limits>
 #include <utility>
+
+#include "bench/error/gnuplot.h"
 
 namespace goldthread::bench {
 namespace {
-
-/// One curve: its points in ascending order of step.
-struct Curve {
-  std::string title;
-  std::string style;
-  std::vector<std::pair<double, double>> points;
-};
-
-/// Okabe and Ito's colours, which colour-blind readers can tell apart.
-const char* color_of(Look look) {
-  switch (look) {
-    case Look::kUnlit:
-      return "#0072B2";
-    case Look::kPhong:
-      return "#D55E00";
-    case Look::kMip:
-      return "#009E73";
-    case Look::kIsosurface:
-      return "#CC79A7";
-  }
-  return "black";
-}
-
-int point_of(Look look) {
-  constexpr int kPoints[] = {7, 5, 9, 13};
-  return kPoints[static_cast<int>(look)];
-}
 
 /// Goldthread's solid and filled, VTK's dashed and open, ParaView's a star.
 std::string style_of(const std::string& program, Look look) {
@@ -47,19 +21,6 @@ std::string style_of(const std::string& program, Look look) {
                        point_of(look) - 1);
   return "with points lc rgb 'black' pt 3 ps 1.6 lw 1.6";
 }
-
-/// Text between gnuplot's single quotes.
-std::string quoted(const std::string& text) {
-  std::string result = "'";
-  for (const char c : text) {
-    if (c == '\'') result += '\'';
-    result += c == '\n' ? ' ' : c;
-  }
-  return result + "'";
-}
-
-/// Errors at roundoff are drawn here, or they would press all others into a corner.
-constexpr double kLeastDrawn = 1e-3;
 
 using Point = std::pair<double, double> (*)(const MethodRow&);
 
@@ -111,67 +72,9 @@ Curve default_marks(const Report& report) {
   return marks;
 }
 
-std::string data_blocks(const std::vector<Curve>& curves) {
-  std::string text;
-  for (std::size_t i = 0; i < curves.size(); ++i) {
-    text += fmt::format("$curve{} << END\n", i);
-    for (const auto& [x, y] : curves[i].points) text += fmt::format("{:.9g} {:.9g}\n", x, y);
-    text += "END\n";
-  }
-  return text;
-}
-
-std::string plot_command(const std::vector<Curve>& curves) {
-  std::string text = "plot ";
-  for (std::size_t i = 0; i < curves.size(); ++i)
-    text += fmt::format("{}$curve{} {} title {} noenhanced", i > 0 ? ", \\\n     " : "", i,
-                        curves[i].style, quoted(curves[i].title));
-  return text + "\n";
-}
-
-/// Everything twice: as SVG and as PNG.
-std::string on_both_terminals(const std::string& name, const std::string& command) {
-  return fmt::format(
-      "set terminal svg size 880,560 font 'sans,13' linewidth 1.3 background 'white'\n"
-      "set output '{0}.svg'\n{1}"
-      "set terminal pngcairo size 1760,1120 font 'sans,24' linewidth 2.6 pointscale 1.8\n"
-      "set output '{0}.png'\n{1}"
-      "unset output\n",
-      name, command);
-}
-
-constexpr const char* kFrame =
-    "set encoding utf8\n"
-    "set border 3 lc rgb '#444444'\n"
-    "set tics nomirror out textcolor rgb '#222222'\n"
-    "set grid xtics ytics lt 1 lc rgb '#dddddd' lw 0.5\n"
-    "set key outside right center Left reverse samplen 2 spacing 1.25\n";
-
-constexpr const char* kLogLog =
-    "set logscale xy\n"
-    "set format y '%g'\n"
-    "set yrange [7e-4:*]\n"
-    "set ylabel 'RMS error in 1/255 (what is below 0.001 is drawn there)'\n";
-
 std::string subtitle_of(const Report& report) {
   return fmt::format("{}×{} pixels, {} threads", report.size.width, report.size.height,
                      report.threads);
-}
-
-std::string titled(const std::string& title, const std::string& subtitle) {
-  return "set title " + quoted(title + " (" + subtitle + ")") + " noenhanced\n";
-}
-
-/// The curves' extent along x, with a little room.
-std::string x_range(const std::vector<Curve>& curves) {
-  double low = std::numeric_limits<double>::infinity(), high = 0;
-  for (const Curve& curve : curves) {
-    for (const auto& point : curve.points) {
-      low = std::min(low, point.first);
-      high = std::max(high, point.first);
-    }
-  }
-  return fmt::format("set xrange [{:.6g}:{:.6g}]\n", low / 1.3, high * 1.3);
 }
 
 std::string error_time(const Report& report) {
@@ -231,7 +134,9 @@ std::string samples_per_second(const Report& report) {
 std::vector<Plot> plots_of(const Report& report) {
   return {{"error-time", error_time(report)},
           {"error-step", error_step(report)},
-          {"samples-per-second", samples_per_second(report)}};
+          {"samples-per-second", samples_per_second(report)},
+          {"adaptive-time", adaptive_time(report)},
+          {"adaptive-rays", adaptive_rays(report)}};
 }
 
 }  // namespace goldthread::bench
