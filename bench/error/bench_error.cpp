@@ -5,7 +5,8 @@
 
 #include <algorithm>
 
-#include "bench/error/gnuplot.h"
+#include "bench/error/adaptive_measurements.h"
+#include "bench/error/draw.h"
 #include "bench/error/machine.h"
 #include "bench/error/own_measurements.h"
 #include "bench/error/peer_measurements.h"
@@ -127,6 +128,7 @@ Report run_error_bench(const Subject& subject, const ErrorBenchSettings& setting
   PeerMeasurements* const present = peers ? &*peers : nullptr;
   measure_methods(subject, settings, caster, references, present, report);
   measure_latencies(subject, settings, caster, present, report);
+  measure_adaptive(subject, settings, present, report);
   report.storages = measure_storages(subject, settings, caster);
   report.features = measure_features(subject, settings, caster);
   if (settings.all_instruction_sets) {

@@ -3,17 +3,42 @@
 
 #include <fmt/format.h>
 
-#include <chrono>
-
-#include "bench/error/process.h"
-#include "common/image/whole_file.h"
+#include <algorithm>
+#include <limits>
 
 namespace goldthread::bench {
-namespace {
 
-constexpr std::chrono::seconds kPlotPatience{60};
+const char* const kFrame =
+    "set encoding utf8\n"
+    "set border 3 lc rgb '#444444'\n"
+    "set tics nomirror out textcolor rgb '#222222'\n"
+    "set grid xtics ytics lt 1 lc rgb '#dddddd' lw 0.5\n"
+    "set key outside right center Left reverse samplen 2 spacing 1.25\n";
 
-}  // namespace
+const char* const kLogLog =
+    "set logscale xy\n"
+    "set format y '%g'\n"
+    "set yrange [7e-4:*]\n"
+    "set ylabel 'RMS error in 1/255 (what is below 0.001 is drawn there)'\n";
+
+const char* color_of(Look look) {
+  switch (look) {
+    case Look::kUnlit:
+      return "#0072B2";
+    case Look::kPhong:
+      return "#D55E00";
+    case Look::kMip:
+      return "#009E73";
+    case Look::kIsosurface:
+      return "#CC79A7";
+  }
+  return "black";
+}
+
+int point_of(Look look) {
+  constexpr int kPoints[] = {7, 5, 9, 13};
+  return kPoints[static_cast<int>(look)];
+}
 
 std::string quoted(const std::string& text) {
   std::string result = "'";
@@ -24,16 +49,22 @@ std::string quoted(const std::string& text) {
   return result + "'";
 }
 
-std::string plot_frame() {
-  return "set encoding utf8\n"
-         "set border 3 lc rgb '#444444'\n"
-         "set tics nomirror out textcolor rgb '#222222'\n"
-         "set grid xtics ytics lt 1 lc rgb '#dddddd' lw 0.5\n"
-         "set key outside right center Left reverse samplen 2 spacing 1.25\n";
+std::string data_blocks(const std::vector<Curve>& curves) {
+  std::string text;
+  for (std::size_t i = 0; i < curves.size(); ++i) {
+    text += fmt::format("$curve{} << END\n", i);
+    for (const auto& [x, y] : curves[i].points) text += fmt::format("{:.9g} {:.9g}\n", x, y);
+    text += "END\n";
+  }
+  return text;
 }
 
-std::string titled(const std::string& title, const std::string& subtitle) {
-  return "set title " + quoted(title + " (" + subtitle + ")") + " noenhanced\n";
+std::string plot_command(const std::vector<Curve>& curves) {
+  std::string text = "plot ";
+  for (std::size_t i = 0; i < curves.size(); ++i)
+    text += fmt::format("{}$curve{} {} title {} noenhanced", i > 0 ? ", \\\n     " : "", i,
+                        curves[i].style, quoted(curves[i].title));
+  return text + "\n";
 }
 
 std::string on_both_terminals(const std::string& name, const std::string& command) {
@@ -46,21 +77,19 @@ std::string on_both_terminals(const std::string& name, const std::string& comman
       name, command);
 }
 
-void write_text(const std::filesystem::path& file, const std::string& text) {
-  write_whole_file(file, {reinterpret_cast<const unsigned char*>(text.data()), text.size()});
+std::string titled(const std::string& title, const std::string& subtitle) {
+  return "set title " + quoted(title + " (" + subtitle + ")") + " noenhanced\n";
 }
 
-std::string draw(const Plot& plot, const std::filesystem::path& folder) {
-  if (plot.script.empty()) return {};
-  const std::string script = plot.name + ".gp";
-  write_text(folder / script, plot.script);
-  try {
-    ChildProcess gnuplot({"env", "-C", folder.string(), "gnuplot", script}, folder / "gnuplot.log");
-    gnuplot.wait(kPlotPatience);
-    return {};
-  } catch (const PeerFailure& failure) {
-    return failure.what();
+std::string x_range(const std::vector<Curve>& curves) {
+  double low = std::numeric_limits<double>::infinity(), high = 0;
+  for (const Curve& curve : curves) {
+    for (const auto& point : curve.points) {
+      low = std::min(low, point.first);
+      high = std::max(high, point.first);
+    }
   }
+  return fmt::format("set xrange [{:.6g}:{:.6g}]\n", low / 1.3, high * 1.3);
 }
 
 }  // namespace goldthread::bench

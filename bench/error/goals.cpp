@@ -1,35 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
 // The project's figures, beside what was measured.
 
+#include "bench/error/goals.h"
+
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
 
-#include "bench/error/report.h"
-
 namespace goldthread::bench {
 namespace {
 
 constexpr double kGoalStep = 0.5;  // voxels
-
-Goal speed_up(std::string what, const std::string& peer, const Seconds* theirs, const Seconds* ours,
-              double wanted) {
-  Goal goal{std::move(what), fmt::format("{} / {:g}", peer, wanted), "not measured", {}};
-  if (theirs == nullptr || ours == nullptr || ours->median <= 0 || ours->minimum <= 0) return goal;
-  const double by_median = theirs->median / ours->median;
-  goal.reached = fmt::format("{} / {} ({} ms : {} ms); by the quickest frames / {}", peer,
-                             number(by_median), milliseconds(theirs->median),
-                             milliseconds(ours->median), number(theirs->minimum / ours->minimum));
-  goal.met = by_median >= wanted;
-  return goal;
-}
-
-Goal at_most(std::string what, double wanted, std::optional<double> reached) {
-  return {std::move(what), fmt::format("≤ {:g}", wanted),
-          reached ? number(*reached) : "not measured",
-          reached ? std::optional(*reached <= wanted) : std::nullopt};
-}
 
 const Seconds* seconds_of(const MethodRow* row) { return row ? &row->seconds : nullptr; }
 const Seconds* seconds_of(const LatencyRow* row) { return row ? &row->seconds : nullptr; }
@@ -99,9 +81,28 @@ void add_unused_features(const Report& report, std::vector<Goal>& goals) {
 
 }  // namespace
 
+Goal speed_up(std::string what, const std::string& peer, const Seconds* theirs, const Seconds* ours,
+              double wanted) {
+  Goal goal{std::move(what), fmt::format("{} / {:g}", peer, wanted), "not measured", {}};
+  if (theirs == nullptr || ours == nullptr || ours->median <= 0 || ours->minimum <= 0) return goal;
+  const double by_median = theirs->median / ours->median;
+  goal.reached = fmt::format("{} / {} ({} ms : {} ms); by the quickest frames / {}", peer,
+                             number(by_median), milliseconds(theirs->median),
+                             milliseconds(ours->median), number(theirs->minimum / ours->minimum));
+  goal.met = by_median >= wanted;
+  return goal;
+}
+
+Goal at_most(std::string what, double wanted, std::optional<double> reached) {
+  return {std::move(what), fmt::format("≤ {:g}", wanted),
+          reached ? number(*reached) : "not measured",
+          reached ? std::optional(*reached <= wanted) : std::nullopt};
+}
+
 std::vector<Goal> goals_of(const Report& report) {
   std::vector<Goal> goals;
   add_speed_ups(report, goals);
+  add_adaptive_goals(report, goals);
   add_errors(report, goals);
   add_kernel(report, goals);
   add_unused_features(report, goals);

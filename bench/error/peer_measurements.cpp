@@ -41,11 +41,31 @@ std::vector<Contestant> PeerMeasurements::vtk_contestants() {
     for (const double step : vtk_steps(settings_.quick)) {
       vtk_entries_.push_back({look, step});
       contestants.push_back({fmt::format("VTK {}", name_of(look)), [this, look, step] {
-                               return vtk_->frame_seconds(look, step * subject_.voxel_mm);
+                               return vtk_->frame_seconds(look, step * subject_.voxel_mm,
+                                                          subject_.scene.image.size);
                              }});
     }
   }
   return contestants;
+}
+
+std::optional<Contestant> PeerMeasurements::vtk_contestant(Look look, double step_voxels,
+                                                           ImageSize size) {
+  if (!vtk_) return {};
+  return Contestant{"VTK", [this, look, step_mm = step_voxels * subject_.voxel_mm, size] {
+                      return vtk_->frame_seconds(look, step_mm, size);
+                    }};
+}
+
+std::optional<std::vector<Color>> PeerMeasurements::vtk_picture(Look look, double step_voxels,
+                                                                ImageSize size, int stride) {
+  if (!vtk_) return {};
+  try {
+    return vtk_->picture(look, step_voxels * subject_.voxel_mm, size, stride);
+  } catch (const PeerFailure& failure) {
+    vtk_row_.failure = failure.what();
+    return {};
+  }
 }
 
 MethodRow PeerMeasurements::aligned_row(const char* program, Look look, double step_voxels,

@@ -26,6 +26,11 @@ class PeerMeasurements {
   /// The error of VTK's surface for the isovalue, as a row without a time.
   std::optional<MethodRow> vtk_surface_row(References& references);
   std::optional<Contestant> vtk_isovalue_contestant();
+  /// VTK's frames of one look, at any size; nothing if VTK cannot be had.
+  std::optional<Contestant> vtk_contestant(Look look, double step_voxels, ImageSize size);
+  /// Every `stride`-th pixel of such a frame.
+  std::optional<std::vector<Color>> vtk_picture(Look look, double step_voxels, ImageSize size,
+                                                int stride);
   /// VTK's time and ours from the start of a process to its first picture.
   std::vector<Contestant> start_contestants();
 

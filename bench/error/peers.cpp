@@ -224,9 +224,11 @@ VtkPeer::VtkPeer(const PeerJob& job, const PeerSettings& settings, const Virtual
   version_ = about.value("version", "") + ", " + about.value("backend", "") + " threads";
 }
 
-double VtkPeer::frame_seconds(Look look, double step_mm) {
-  return seconds_in(
-      answer_of(process_, {{"command", "frame"}, {"look", name_of(look)}, {"step", step_mm}}));
+double VtkPeer::frame_seconds(Look look, double step_mm, ImageSize size) {
+  return seconds_in(answer_of(process_, {{"command", "frame"},
+                                         {"look", name_of(look)},
+                                         {"step", step_mm},
+                                         {"size", {size.width, size.height}}}));
 }
 
 double VtkPeer::isovalue_seconds(double value, double back) {
@@ -239,6 +241,7 @@ std::vector<Color> VtkPeer::picture(Look look, double step_mm, ImageSize size, i
   answer_of(process_, {{"command", "picture"},
                        {"look", name_of(look)},
                        {"step", step_mm},
+                       {"size", {size.width, size.height}},
                        {"file", file.string()}});
   return read_picture(file, size, stride);
 }

@@ -45,7 +45,7 @@ class VtkPeer {
  public:
   VtkPeer(const PeerJob& job, const PeerSettings& settings, const VirtualDisplay& display);
   const std::string& version() const { return version_; }
-  double frame_seconds(Look look, double step_mm);
+  double frame_seconds(Look look, double step_mm, ImageSize size);
   double isovalue_seconds(double value, double back);
   /// The subset's pixels of a picture in this look.
   std::vector<Color> picture(Look look, double step_mm, ImageSize size, int stride);

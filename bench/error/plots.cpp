@@ -4,40 +4,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <limits>
 #include <utility>
 
 #include "bench/error/gnuplot.h"
 
 namespace goldthread::bench {
 namespace {
-
-/// One curve: its points in ascending order of step.
-struct Curve {
-  std::string title;
-  std::string style;
-  std::vector<std::pair<double, double>> points;
-};
-
-/// Okabe and Ito's colours, which colour-blind readers can tell apart.
-const char* color_of(Look look) {
-  switch (look) {
-    case Look::kUnlit:
-      return "#0072B2";
-    case Look::kPhong:
-      return "#D55E00";
-    case Look::kMip:
-      return "#009E73";
-    case Look::kIsosurface:
-      return "#CC79A7";
-  }
-  return "black";
-}
-
-int point_of(Look look) {
-  constexpr int kPoints[] = {7, 5, 9, 13};
-  return kPoints[static_cast<int>(look)];
-}
 
 /// Goldthread's solid and filled, VTK's dashed and open, ParaView's a star.
 std::string style_of(const std::string& program, Look look) {
@@ -49,9 +21,6 @@ std::string style_of(const std::string& program, Look look) {
                        point_of(look) - 1);
   return "with points lc rgb 'black' pt 3 ps 1.6 lw 1.6";
 }
-
-/// Errors at roundoff are drawn here, or they would press all others into a corner.
-constexpr double kLeastDrawn = 1e-3;
 
 using Point = std::pair<double, double> (*)(const MethodRow&);
 
@@ -103,52 +72,16 @@ Curve default_marks(const Report& report) {
   return marks;
 }
 
-std::string data_blocks(const std::vector<Curve>& curves) {
-  std::string text;
-  for (std::size_t i = 0; i < curves.size(); ++i) {
-    text += fmt::format("$curve{} << END\n", i);
-    for (const auto& [x, y] : curves[i].points) text += fmt::format("{:.9g} {:.9g}\n", x, y);
-    text += "END\n";
-  }
-  return text;
-}
-
-std::string plot_command(const std::vector<Curve>& curves) {
-  std::string text = "plot ";
-  for (std::size_t i = 0; i < curves.size(); ++i)
-    text += fmt::format("{}$curve{} {} title {} noenhanced", i > 0 ? ", \\\n     " : "", i,
-                        curves[i].style, quoted(curves[i].title));
-  return text + "\n";
-}
-
-constexpr const char* kLogLog =
-    "set logscale xy\n"
-    "set format y '%g'\n"
-    "set yrange [7e-4:*]\n"
-    "set ylabel 'RMS error in 1/255 (what is below 0.001 is drawn there)'\n";
-
 std::string subtitle_of(const Report& report) {
   return fmt::format("{}×{} pixels, {} threads", report.size.width, report.size.height,
                      report.threads);
-}
-
-/// The curves' extent along x, with a little room.
-std::string x_range(const std::vector<Curve>& curves) {
-  double low = std::numeric_limits<double>::infinity(), high = 0;
-  for (const Curve& curve : curves) {
-    for (const auto& point : curve.points) {
-      low = std::min(low, point.first);
-      high = std::max(high, point.first);
-    }
-  }
-  return fmt::format("set xrange [{:.6g}:{:.6g}]\n", low / 1.3, high * 1.3);
 }
 
 std::string error_time(const Report& report) {
   std::vector<Curve> curves = curves_of(report, time_and_error, true);
   if (curves.empty()) return {};
   if (Curve marks = default_marks(report); !marks.points.empty()) curves.push_back(marks);
-  return plot_frame() + std::string(kLogLog) +
+  return kFrame + std::string(kLogLog) +
          titled("Error against time", subtitle_of(report) + ", " + report.instruction_set) +
          "set xtics (1, 2, 5, 10, 20, 50, 100, 200, 500, 1000, 2000, 5000, 10000)\n"
          "set xlabel 'median time of a frame in ms'\n" +
@@ -163,7 +96,7 @@ std::string error_step(const Report& report) {
   Curve guide{"second order", "with lines lc rgb '#888888' dt 3 lw 1.4", {}};
   for (const double h : {1.0, 1 / 16.0}) guide.points.emplace_back(step * h, 1.6 * error * h * h);
   curves.push_back(guide);
-  return plot_frame() + std::string(kLogLog) +
+  return kFrame + std::string(kLogLog) +
          titled("Error against step", subtitle_of(report) + ", " + report.instruction_set) +
          "set xtics (0.0625, 0.125, 0.25, 0.5, 1, 2, 4)\nset xlabel 'step in voxels'\n" +
          x_range(curves) + data_blocks(curves) +
@@ -188,7 +121,7 @@ std::string samples_per_second(const Report& report) {
     command += fmt::format("{}$bars using {}:xtic(1) title columnheader lc rgb '{}'",
                            column > 2 ? ", \\\n     " : "", column,
                            column == 2 ? "#999999" : color_of(kLooks[std::size_t(column - 3)]));
-  return plot_frame() + titled("Samples per second", subtitle_of(report)) +
+  return kFrame + titled("Samples per second", subtitle_of(report)) +
          "set xtics noenhanced\nset style data histograms\nset style histogram clustered gap 1.5\n"
          "set style fill solid 0.9 noborder\nset boxwidth 0.92\nset yrange [0:*]\n"
          "unset grid\nset grid ytics lt 1 lc rgb '#dddddd' lw 0.5\n"
@@ -201,7 +134,9 @@ std::string samples_per_second(const Report& report) {
 std::vector<Plot> plots_of(const Report& report) {
   return {{"error-time", error_time(report)},
           {"error-step", error_step(report)},
-          {"samples-per-second", samples_per_second(report)}};
+          {"samples-per-second", samples_per_second(report)},
+          {"adaptive-time", adaptive_time(report)},
+          {"adaptive-rays", adaptive_rays(report)}};
 }
 
 }  // namespace goldthread::bench

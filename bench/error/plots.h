@@ -15,7 +15,12 @@ struct Plot {
   std::string script;  ///< empty if there is nothing to show
 };
 
-/// Error against time, error against step (both log-log), and samples per second.
+/// Error against time, error against step (both log-log), and samples per second; of adaptive
+/// refinement error against time and against rays.
 std::vector<Plot> plots_of(const Report& report);
+
+/// Scripts of the latter two.
+std::string adaptive_time(const Report& report);
+std::string adaptive_rays(const Report& report);
 
 }  // namespace goldthread::bench

@@ -3,6 +3,8 @@
 
 #include <fmt/format.h>
 
+#include "bench/error/adaptive_sections.h"
+
 namespace goldthread::bench {
 namespace {
 
@@ -185,6 +187,7 @@ const LatencyRow* Report::find_latency(const std::string& what, const std::strin
 std::vector<Section> sections_of(const Report& report) {
   std::vector<Section> sections{goal_section(report), reference_section(report),
                                 method_section(report)};
+  add_adaptive_sections(report, sections);
   if (!report.latencies.empty()) sections.push_back(latency_section(report));
   sections.push_back(ratio_section(
       "Kinds of voxel", "The same data and picture, unlit, at the default step.", report.storages));

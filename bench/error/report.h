@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "bench/error/adaptive_report.h"
 #include "bench/error/statistics.h"
 #include "bench/error/subject.h"
 #include "bench/error/table.h"
@@ -71,6 +72,17 @@ struct LatencyRow {
   Seconds seconds;
 };
 
+/// From a new view until the last worker has begun it.
+struct InterruptRow {
+  Look look = Look::kUnlit;
+  ImageSize size;
+  int count = 0;
+  double median = 0;  ///< seconds
+  double percentile_99 = 0;
+  double batch_median = 0;  ///< of the rays that a worker casts between two looks
+  double batch_percentile_99 = 0;
+};
+
 struct GatherRow {
   std::string instruction_set;
   Seconds seconds;  ///< of `samples`
@@ -110,6 +122,8 @@ struct Report {
   std::vector<RatioRow> features;
   std::vector<GatherRow> gathers;
   MemoryFigures memory;
+  AdaptiveReport adaptive;
+  std::vector<InterruptRow> interrupts;
   std::vector<PeerRow> peers;
   std::vector<std::string> notes;
 

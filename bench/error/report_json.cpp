@@ -4,16 +4,13 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "bench/error/adaptive_json.h"
 #include "bench/error/report.h"
 
 namespace goldthread::bench {
 namespace {
 
 using Json = nlohmann::ordered_json;
-
-Json json_of(const Seconds& seconds) {
-  return {{"min", seconds.minimum}, {"median", seconds.median}, {"frames", seconds.count}};
-}
 
 Json json_of(const PictureError& error) {
   return {{"rms", error.rms},
@@ -92,6 +89,10 @@ Json list_of(const std::vector<Row>& rows) {
 
 }  // namespace
 
+Json json_of(const Seconds& seconds) {
+  return {{"min", seconds.minimum}, {"median", seconds.median}, {"frames", seconds.count}};
+}
+
 std::string report_json(const Report& report) {
   const Json json{{"bench", "error"},
                   {"version", report.version},
@@ -114,6 +115,8 @@ std::string report_json(const Report& report) {
                   {"references", list_of(report.references)},
                   {"methods", list_of(report.methods)},
                   {"latencies", list_of(report.latencies)},
+                  {"adaptive", json_of(report.adaptive)},
+                  {"interrupts", list_of(report.interrupts)},
                   {"storages", list_of(report.storages)},
                   {"features", list_of(report.features)},
                   {"gatherAndLerp", list_of(report.gathers)},

@@ -3,7 +3,7 @@
 
 #include <fmt/format.h>
 
-#include "bench/error/gnuplot.h"
+#include "bench/error/draw.h"
 #include "bench/error/machine.h"
 #include "bench/motion/methods.h"
 

@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <cmath>
 #include <glm/gtc/constants.hpp>
-#include <limits>
 
 #include "common/image/color.h"
 
@@ -26,6 +25,16 @@ template <class T>
 void store(const glm::dvec3& v, T* to) {
   for (int i = 0; i < 3; ++i) to[i] = T(v[i]);
 }
+
+glm::dvec3 spacing_of(const VolumeGeometry& geometry) {
+  const glm::dmat3 map = linear_map(geometry);
+  return {glm::length(map[0]), glm::length(map[1]), glm::length(map[2])};
+}
+
+double least_of(const glm::dvec3& v) { return std::min({v.x, v.y, v.z}); }
+
+/// The step where none is asked for, in voxels.
+double default_voxels(Features features) { return features.dvr && features.shading ? 0.2 : 0.5; }
 
 // v / |v| without overflow; 0 for 0.
 glm::dvec3 direction_of(const glm::dvec3& v) {
@@ -61,16 +70,21 @@ Features features_of(const SceneVolume& material, const std::vector<Light>& ligh
 }
 
 double step_of(double wanted_mm, const VolumeGeometry& geometry, Features features) {
-  const glm::dmat3 map = linear_map(geometry);
-  double smallest = std::numeric_limits<double>::infinity();
-  double diagonal = 0;
-  for (int axis = 0; axis < 3; ++axis) {
-    smallest = std::min(smallest, glm::length(map[axis]));
-    diagonal += glm::length(map[axis]) * geometry.size[axis];
-  }
-  const double share = features.dvr && features.shading ? 0.2 : 0.5;
-  const double step = wanted_mm > 0 ? wanted_mm : share * smallest;
-  return std::max(step, diagonal / (1 << 20));
+  const glm::dvec3 spacing = spacing_of(geometry);
+  const double step = wanted_mm > 0 ? wanted_mm : default_voxels(features) * least_of(spacing);
+  return std::max(step, glm::dot(spacing, glm::dvec3(geometry.size)) / (1 << 20));
+}
+
+double step_for_error(double error, const VolumeGeometry& geometry, Features features) {
+  constexpr double kShare = 0.25;  // of the error; squared it is 1/16 of it
+  constexpr double kMostVoxels = 1;
+  const double least = default_voxels(features);
+  double voxels = least;
+  if (features.dvr && features.shading)
+    voxels = std::pow(kShare * error / 1.58, 1 / 1.25);
+  else if (features.dvr || features.mip)
+    voxels = std::sqrt(kShare * error / 0.17);
+  return std::clamp(voxels, least, kMostVoxels) * least_of(spacing_of(geometry));
 }
 
 FieldLayout field_layout_of(const Volume& volume) {

@@ -10,8 +10,8 @@ volume rendering and mip are vtkFixedPointVolumeRayCastMapper's, one ray per pix
 vtkFlyingEdges3D's triangles, drawn by OpenGL in software. Commands:
 
     {"command": "about"}                                        {"version": …, "backend": …}
-    {"command": "frame", "look": "unlit", "step": 0.5}          {"seconds": …}
-    {"command": "picture", "look": …, "step": …, "file": …}     {"file": …}: writes a PNG
+    {"command": "frame", "look": "unlit", "step": 0.5, "size": [512, 512]}    {"seconds": …}
+    {"command": "picture", "look": …, "step": …, "size": …, "file": …}        {"file": …}: writes a PNG
     {"command": "isovalue", "value": 81, "back": 80}            {"seconds": …}: from new value to picture
 """
 import json
@@ -92,6 +92,12 @@ class Window:
         self.camera.SetFocalPoint(*job["camera"]["target"])
         self.camera.SetViewUp(*job["camera"]["up"])
         self.camera.SetViewAngle(job["camera"]["fovy"])
+
+    def set_size(self, size):
+        if tuple(size) == tuple(self.window.GetSize()):
+            return
+        self.window.SetSize(*size)
+        self.render()
 
     def render(self):
         self.window.Render()
@@ -196,6 +202,7 @@ class Peer:
 
     def frame(self, request):
         view = self.view(request["look"])
+        view.set_size(request["size"])
         view.set_step(request["step"])
         view.camera.Modified()
         start = time.perf_counter()
@@ -204,6 +211,7 @@ class Peer:
 
     def picture(self, request):
         view = self.view(request["look"])
+        view.set_size(request["size"])
         view.set_step(request["step"])
         view.camera.Modified()
         view.render()
