@@ -64,6 +64,7 @@ void CompositorRole::on(const BeginView& message) {
   view_ = message;
   samples_.emplace(view_->grid, band);
   told_step_ = kNoStep;
+  tell_step();  // of a band without tiles, which nothing else will
   if (early_.empty() || early_.front().epoch > view_->epoch) return;
   for (const Samples& early : std::exchange(early_, {})) {
     if (early.epoch == view_->epoch) place(early);
@@ -91,17 +92,20 @@ void CompositorRole::place(const Samples& message) {
                       "start the same build of goldthread on every host",
                       ExitStatus::kClusterFailed});
   }
+  tell_step();
+}
+
+void CompositorRole::tell_step() {
   const Step step = samples_->step();
   if (step == told_step_) return;
   told_step_ = step;
   post_.to_master(BandReady{view_->epoch, step});
 }
 
-std::vector<float> CompositorRole::picture(Filter filter, ImageSize size, PixelRect& rect) const {
+std::vector<float> CompositorRole::picture(Filter filter, ImageSize size, PixelRect rect) const {
   auto pixels = reconstruct(*samples_, filter, view_->background);
   const ImageSize image = view_->grid.image;
   const PixelRect band = samples_->rect();
-  rect = band_of_size(band, image, size);
   if (size == image && filter != Filter::kBiquadratic) return pixels;
   return resample(pixels, {band.width, band.height}, window_of(band, image, rect, size),
                   {rect.width, rect.height}, filter);
@@ -110,6 +114,8 @@ std::vector<float> CompositorRole::picture(Filter filter, ImageSize size, PixelR
 void CompositorRole::on(const Present& message) {
   if (!view_ || message.epoch != view_->epoch || samples_->tiles().empty()) return;
   EncodedBand band;
+  band.rect = band_of_size(samples_->rect(), view_->grid.image, message.size);
+  if (band.rect.height == 0) return;  // less than a row of a smaller picture
   const auto pixels = picture(message.filter, message.size, band.rect);
   const auto rgb = display_rgb8(pixels, view_->color_space);
   const Encoding encoding = message.lossless ? Encoding::kZstdRgb : Encoding::kJpeg;

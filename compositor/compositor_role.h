@@ -37,9 +37,11 @@ class CompositorRole {
   void on(const ReportCounters& message);
   void on(const Stop& message);
   void place(const Samples& message);
+  /// To the master, if all tiles have taken another one.
+  void tell_step();
   void keep_early(Samples message);
-  /// The band in a picture of `size`, float RGBA, and where it lies there.
-  std::vector<float> picture(Filter filter, ImageSize size, PixelRect& rect) const;
+  /// The band's rows `rect` of a picture of `size`, float RGBA.
+  std::vector<float> picture(Filter filter, ImageSize size, PixelRect rect) const;
   void forward_input();
 
   Post post_;

@@ -24,11 +24,13 @@ double rms_error(double squared_error, double pixels) {
 bool is_enough(const StopRule& rule, Step step, const TileQuality& quality, std::uint64_t rays,
                double pixels) {
   if (step >= kLastStep) return true;
-  const double samples = std::max<double>(rule.samples, 1);
-  if (rule.sampling == Sampling::kEveryPixel) return double(rays) >= samples * pixels;
-  if (rule.samples > 0 && double(rays) >= samples * pixels) return true;
   // The coarse steps tell too little to stop at.
-  return step >= kFirstAdaptiveStep && rms_error(quality.squared_error, pixels) <= rule.error;
+  if (step < kFirstAdaptiveStep) return false;
+  // Not by its rays: small pictures have more of them around their pixels than in them.
+  if (rule.sampling == Sampling::kEveryPixel)
+    return even_samples(step) >= std::max(rule.samples, 1U);
+  if (rule.samples > 0 && double(rays) >= double(rule.samples) * pixels) return true;
+  return rms_error(quality.squared_error, pixels) <= rule.error;
 }
 
 }  // namespace goldthread

@@ -51,6 +51,8 @@ std::optional<RefinedTile> refine_tile(const CastView& view, const RenderTile& q
   std::vector<SampleOffset> changed;
   while (tile->step() < quantum.to) {
     if (!tile->advance(cast)) return {};
+    // What was cast again is counted once: rays are those of the picture, whoever cast it.
+    if (tile->step() <= quantum.from) result.counts = {};
     if (tile->step() > quantum.from)
       changed.insert(changed.end(), tile->changed().begin(), tile->changed().end());
   }

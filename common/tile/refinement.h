@@ -71,6 +71,14 @@ struct Refinement {
   }
 };
 
+/// How many samples each pixel has after a step of Sampling::kEveryPixel, if it may have so many:
+/// none of its own at first, then 1, 5, 9, 17 …
+constexpr std::uint32_t even_samples(Step step) {
+  if (step <= kFirstAdaptiveStep) return step == kFirstAdaptiveStep ? 1 : 0;
+  const unsigned doublings = step.value - kFirstAdaptiveStep.value - 1U;
+  return 1 + (4U << (doublings < 18 ? doublings : 18));
+}
+
 /// Whether a quantum from one step to another makes sense. For bytes of a peer.
 constexpr bool is_step(Step from, Step to) { return from < to && to <= kLastStep; }
 

@@ -6,38 +6,50 @@
 
 #include <gtest/gtest.h>
 
+#include <zstd.h>
+
 #include <cstring>
 
 #include "common/transport/loopback.h"
+#include "tests/compositor/packed_samples.h"
 
 namespace goldthread {
 namespace {
 
 const TileGrid kGrid = TileGrid::squares({64, 64}, 64);
-constexpr Rank kCompositor{1}, kWorker{2};
+constexpr Rank kCompositor{1};
 
 class CompositorRoleTest : public ::testing::Test {
  protected:
   void begin_session(std::uint32_t compositors = 1) {
-    master_.to_compositor(kCompositor, BeginSession{1, false, compositors});
+    master_.to_compositor(role_, BeginSession{1, false, compositors});
   }
   void begin_view(std::uint32_t epoch, const TileGrid& grid = kGrid) {
-    master_.to_compositor(kCompositor, BeginView{{epoch}, 1, {}, grid, {0, 0, 0}, {}});
+    BeginView view;
+    view.epoch = {epoch};
+    view.grid = grid;
+    master_.to_compositor(role_, view);
+    grid_ = grid;
   }
-  /// All samples of a step have the value `red`.
-  void send_samples(std::uint32_t epoch, Level from, Level to, float red, std::uint32_t tile = 0) {
-    const std::vector<Sample> samples(new_samples({64, 64}, from, to).size(), Sample{red, 0, 0, 1});
-    Samples message{{epoch}, {tile}, from, to, Buffer(samples.size() * sizeof(Sample))};
-    std::memcpy(message.colors.data(), samples.data(), message.colors.size());
-    worker_.to_compositor(kCompositor, std::move(message));
+  /// All samples of a step's grid have the value `red`.
+  void send_samples(std::uint32_t epoch, Step from, Step to, float red, std::uint32_t tile = 0) {
+    send(epoch, packed_grid(grid_, {tile}, from, to, [&](float, float) {
+           return Sample{red, 0, 0, 1};
+         }));
   }
-  void collect(std::uint32_t epoch) { master_.to_compositor(kCompositor, CollectBand{{epoch}}); }
+  void send(std::uint32_t epoch, Samples message) {
+    message.epoch = {epoch};
+    worker_.to_compositor(role_, std::move(message));
+  }
+  void collect(std::uint32_t epoch, Filter filter = Filter::kBilinear) {
+    master_.to_compositor(role_, CollectBand{{epoch}, filter});
+  }
   /// Lets the role work through its mailbox.
   void run() {
-    master_.to_compositor(kCompositor, Stop{});
-    CompositorRole(*transports_[1]).run();
+    master_.to_compositor(role_, Stop{});
+    CompositorRole(*transports_[static_cast<std::size_t>(role_.value)]).run();
     while (auto message = master_.receive<ToMaster>()) {
-      EXPECT_EQ(message->first, kCompositor);
+      EXPECT_EQ(message->first, role_);
       received_.push_back(std::move(message->second));
     }
   }
@@ -49,16 +61,18 @@ class CompositorRoleTest : public ::testing::Test {
     }
     return all;
   }
-  static float red_of(const BandPicture& picture) {
+  static float red_of(const BandPicture& picture, std::size_t pixel = 0) {
     float red = 0;
-    std::memcpy(&red, picture.pixels.data(), sizeof red);
+    std::memcpy(&red, picture.pixels.data() + 4 * sizeof red * pixel, sizeof red);
     return red;
   }
 
-  const LoopbackNetwork network_{3};
-  std::unique_ptr<Transport> transports_[3]{network_.connect({0}), network_.connect({1}),
-                                            network_.connect({2})};
-  Post master_{*transports_[0]}, worker_{*transports_[2]};
+  const LoopbackNetwork network_{4};
+  std::unique_ptr<Transport> transports_[4]{network_.connect({0}), network_.connect({1}),
+                                            network_.connect({2}), network_.connect({3})};
+  Post master_{*transports_[0]}, worker_{*transports_[3]};
+  Rank role_ = kCompositor;
+  TileGrid grid_ = kGrid;
   std::vector<ToMaster> received_;
 };
 
@@ -71,18 +85,17 @@ TEST_F(CompositorRoleTest, SaysHelloFirst) {
   EXPECT_EQ(hello->protocol, kProtocolVersion);
 }
 
-TEST_F(CompositorRoleTest, TellsEachLevelOnceAndHandsOverItsBand) {
+TEST_F(CompositorRoleTest, TellsEachStepOnceAndHandsOverItsBand) {
   begin_session();
   begin_view(1);
-  send_samples(1, kNoLevel, {4}, 0.25f);
-  send_samples(1, {4}, {3}, 0.25f);
+  send_samples(1, kNoStep, {1}, 0.25f);
+  send_samples(1, {1}, {2}, 0.25f);
   collect(1);
   run();
   const auto ready = received<BandReady>();
   ASSERT_EQ(ready.size(), 2u);
-  EXPECT_EQ(ready[0]->level, Level{4});
-  EXPECT_EQ(ready[1]->level, Level{3});
-  EXPECT_EQ(ready[1]->squared_error, 0);
+  EXPECT_EQ(ready[0]->step, Step{1});
+  EXPECT_EQ(ready[1]->step, Step{2});
   const auto bands = received<BandPicture>();
   ASSERT_EQ(bands.size(), 1u);
   EXPECT_EQ(bands[0]->rect, (PixelRect{0, 0, 64, 64}));
@@ -90,9 +103,57 @@ TEST_F(CompositorRoleTest, TellsEachLevelOnceAndHandsOverItsBand) {
   EXPECT_EQ(red_of(*bands[0]), 0.25f);
 }
 
+TEST_F(CompositorRoleTest, TellsAStepWhenTheLastOneMissingBeforeItComes) {
+  begin_session();
+  begin_view(1);
+  send_samples(1, kNoStep, {1}, 0.25f);
+  send_samples(1, {2}, {3}, 0.75f);
+  send_samples(1, {1}, {2}, 0.5f);
+  collect(1);
+  run();
+  const auto ready = received<BandReady>();
+  ASSERT_EQ(ready.size(), 2u);
+  EXPECT_EQ(ready[0]->step, Step{1});
+  EXPECT_EQ(ready[1]->step, Step{3});
+  EXPECT_EQ(red_of(*received<BandPicture>().at(0)), 0.75f) << "what came late is older";
+}
+
+TEST_F(CompositorRoleTest, WithABandWithoutTilesIsNeverWaitedFor) {
+  begin_session(2);  // of one row of tiles, which the second one has
+  begin_view(1);
+  collect(1);
+  run();
+  const auto ready = received<BandReady>();
+  ASSERT_EQ(ready.size(), 1u);
+  EXPECT_EQ(ready[0]->epoch, Epoch{1});
+  EXPECT_EQ(ready[0]->step, kLastStep);
+  ASSERT_EQ(received<BandPicture>().size(), 1u);
+  EXPECT_EQ(received<BandPicture>()[0]->pixels.size(), 0u);
+}
+
+TEST_F(CompositorRoleTest, SmoothsItsBandIfTheFilterIsBiquadratic) {
+  begin_session();
+  begin_view(1);
+  send(1, packed_grid(kGrid, {0}, kNoStep, kPixelStep, [](float x, float y) {
+         return Sample{x == 10.5f && y == 20.5f ? 1.0f : 0.0f, 0, 0, 1};
+       }));
+  collect(1, Filter::kBiquadratic);
+  collect(1, Filter::kPiecewiseQuadratic);
+  run();
+  const auto bands = received<BandPicture>();
+  ASSERT_EQ(bands.size(), 2u);
+  const std::size_t pixel = 20 * 64 + 10;
+  EXPECT_EQ(bands[0]->rect, (PixelRect{0, 0, 64, 64}));
+  EXPECT_FLOAT_EQ(red_of(*bands[0], pixel), 0.75f * 0.75f);
+  EXPECT_FLOAT_EQ(red_of(*bands[0], pixel + 1), 0.125f * 0.75f);
+  EXPECT_FLOAT_EQ(red_of(*bands[0], pixel + 65), 0.125f * 0.125f);
+  EXPECT_EQ(red_of(*bands[1], pixel), 1);
+  EXPECT_EQ(red_of(*bands[1], pixel + 1), 0);
+}
+
 TEST_F(CompositorRoleTest, KeepsAndUsesSamplesThatOvertakeTheirBeginView) {
   begin_session();
-  send_samples(1, kNoLevel, {4}, 0.5f);
+  send_samples(1, kNoStep, {1}, 0.5f);
   begin_view(1);
   collect(1);
   run();
@@ -102,7 +163,7 @@ TEST_F(CompositorRoleTest, KeepsAndUsesSamplesThatOvertakeTheirBeginView) {
 
 TEST_F(CompositorRoleTest, KeepsSamplesThatOvertakeTheirBeginViewAndTheOneBefore) {
   begin_session();
-  send_samples(2, kNoLevel, {4}, 0.5f);
+  send_samples(2, kNoStep, {1}, 0.5f);
   begin_view(1);
   begin_view(2);
   collect(2);
@@ -115,9 +176,9 @@ TEST_F(CompositorRoleTest, KeepsSamplesThatOvertakeTheirBeginViewAndTheOneBefore
 
 TEST_F(CompositorRoleTest, DropsEarlySamplesOfViewsThatNewerOnesReplace) {
   begin_session();
-  send_samples(1, kNoLevel, {4}, 0.1f);
-  send_samples(2, kNoLevel, {4}, 0.2f);
-  send_samples(1, {4}, {3}, 0.1f);
+  send_samples(1, kNoStep, {1}, 0.1f);
+  send_samples(2, kNoStep, {1}, 0.2f);
+  send_samples(1, {1}, {2}, 0.1f);
   begin_view(1);
   begin_view(2);
   run();
@@ -130,9 +191,12 @@ TEST_F(CompositorRoleTest, DropsStaleSamplesAndRequests) {
   begin_session();
   begin_view(1);
   begin_view(2);
-  send_samples(1, kNoLevel, {4}, 0.5f);
+  send_samples(1, kNoStep, {1}, 0.5f);
   collect(1);
-  master_.to_compositor(kCompositor, Present{{1}, 1, 0, 0, false, false});
+  Present stale;
+  stale.epoch = {1};
+  stale.size = kGrid.image;
+  master_.to_compositor(kCompositor, stale);
   run();
   EXPECT_TRUE(received<BandReady>().empty());
   EXPECT_TRUE(received<BandPicture>().empty());
@@ -142,11 +206,11 @@ TEST_F(CompositorRoleTest, DropsStaleSamplesAndRequests) {
 TEST_F(CompositorRoleTest, AnswersSamplesThatDoNotFitWithRankFailedAndServesOn) {
   begin_session();
   begin_view(1);
-  send_samples(1, kNoLevel, {4}, 0.5f, 77);
-  Samples odd{{1}, {0}, kNoLevel, {4}, Buffer(25 * sizeof(Sample) + 1)};
-  std::memset(odd.colors.data(), 0, odd.colors.size());
-  worker_.to_compositor(kCompositor, std::move(odd));
-  send_samples(1, kNoLevel, {4}, 0.5f);
+  send(1, packed({77}, kNoStep, {1}, {{0, 0}}, {{}}));
+  Samples odd{{1}, {0}, kNoStep, {1}, 25, Buffer(25 * sizeof(Sample) + 1)};
+  std::memset(odd.packed.data(), 0, odd.packed.size());
+  send(1, std::move(odd));
+  send_samples(1, kNoStep, {1}, 0.5f);
   run();
   ASSERT_EQ(received<RankFailed>().size(), 2u);
   EXPECT_EQ(received<RankFailed>()[0]->failure.status, ExitStatus::kClusterFailed);
@@ -182,7 +246,7 @@ TEST_F(CompositorRoleTest, AnswersAGatewayThatCannotOpenWithRankFailed) {
 TEST_F(CompositorRoleTest, CountsWhatItSent) {
   begin_session();
   begin_view(1);
-  send_samples(1, kNoLevel, {4}, 0.5f);
+  send_samples(1, kNoStep, {1}, 0.5f);
   master_.to_compositor(kCompositor, ReportCounters{});
   run();
   ASSERT_EQ(received<Counters>().size(), 1u);
@@ -191,6 +255,119 @@ TEST_F(CompositorRoleTest, CountsWhatItSent) {
   ASSERT_EQ(counters.sent.size(), 2u);
   EXPECT_EQ(counters.sent[0].kind, "BandReady");
   EXPECT_EQ(counters.sent[1].kind, "Hello");
+}
+
+/// The second of three compositors: what it encodes goes to the first, whom the test plays.
+class PresentTest : public CompositorRoleTest {
+ protected:
+  PresentTest() {
+    role_ = {2};
+    begin_session(3);
+    begin_view(1, TileGrid::squares({64, 192}, 64));
+  }
+  /// Every pixel of the band; red grows along a row.
+  void send_slope() {
+    send(1, packed_grid(grid_, {1}, kNoStep, kPixelStep, [](float x, float) {
+           return Sample{x / 64, 0, 0, 1};
+         }));
+  }
+  void present(ImageSize size, Filter filter) {
+    Present message;
+    message.epoch = {1};
+    message.size = size;
+    message.filter = filter;
+    message.lossless = true;
+    master_.to_compositor(role_, message);
+  }
+  std::vector<EncodedBand> sent_bands() {
+    run();
+    std::vector<EncodedBand> bands;
+    Post gateway(*transports_[1]);
+    while (auto message = gateway.receive<ToCompositor>())
+      bands.push_back(std::move(std::get<EncodedBand>(message->second)));
+    return bands;
+  }
+  /// Red of each pixel, row by row.
+  static std::vector<int> reds_of(const EncodedBand& band) {
+    const auto pixels = static_cast<std::size_t>(band.rect.width * band.rect.height);
+    std::vector<std::uint8_t> rgb(3 * pixels);
+    EXPECT_EQ(ZSTD_decompress(rgb.data(), rgb.size(), band.payload.data(), band.payload.size()),
+              rgb.size());
+    std::vector<int> reds;
+    for (std::size_t i = 0; i < rgb.size(); i += 3) reds.push_back(rgb[i]);
+    return reds;
+  }
+};
+
+TEST_F(PresentTest, OfTheSamplesOwnSizeIsTheBand) {
+  send_slope();
+  present({64, 192}, Filter::kBilinear);
+  const auto bands = sent_bands();
+  ASSERT_EQ(bands.size(), 1u);
+  EXPECT_EQ(bands[0].image, (ImageSize{64, 192}));
+  EXPECT_EQ(bands[0].rect, (PixelRect{0, 64, 64, 64}));
+  EXPECT_EQ(bands[0].encoding, 2);
+  const auto reds = reds_of(bands[0]);
+  for (std::size_t i = 0; i < reds.size(); ++i)
+    EXPECT_EQ(reds[i], int(255 * (double(i % 64) + 0.5) / 64 + 0.5)) << i;
+}
+
+TEST_F(PresentTest, OfAnotherSizeIsFilteredToIt) {
+  send_slope();
+  present({32, 96}, Filter::kBox);
+  present({128, 384}, Filter::kBilinear);
+  const auto bands = sent_bands();
+  ASSERT_EQ(bands.size(), 2u);
+  EXPECT_EQ(bands[0].image, (ImageSize{32, 96}));
+  EXPECT_EQ(bands[0].rect, (PixelRect{0, 32, 32, 32}));
+  const auto half = reds_of(bands[0]);
+  for (std::size_t i = 0; i < half.size(); ++i)
+    EXPECT_EQ(half[i], int(255 * (double(i % 32) + 0.5) / 32 + 0.5)) << "the mean of two, " << i;
+  EXPECT_EQ(bands[1].rect, (PixelRect{0, 128, 128, 128}));
+  const auto twice = reds_of(bands[1]);
+  for (std::size_t i = 0; i < twice.size(); ++i) {
+    if (i % 128 == 0 || i % 128 == 127) continue;  // beyond the last centres
+    EXPECT_EQ(twice[i], int(255 * (double(i % 128) + 0.5) / 128 + 0.5)) << i;
+  }
+}
+
+TEST_F(PresentTest, OfOtherProportionsShowsTheMiddle) {
+  send_slope();
+  present({32, 192}, Filter::kBilinear);
+  const auto bands = sent_bands();
+  ASSERT_EQ(bands.size(), 1u);
+  EXPECT_EQ(bands[0].rect, (PixelRect{0, 64, 32, 64}));
+  const auto reds = reds_of(bands[0]);
+  for (std::size_t i = 0; i < reds.size(); ++i)
+    EXPECT_EQ(reds[i], int(255 * (double(i % 32) + 16.5) / 64 + 0.5)) << i;
+}
+
+TEST_F(PresentTest, OfASizeThatLeavesTheBandNoRowSendsNothing) {
+  send_slope();
+  present({16, 1}, Filter::kBilinear);
+  EXPECT_TRUE(sent_bands().empty());
+  EXPECT_TRUE(received<RankFailed>().empty());
+}
+
+TEST_F(PresentTest, PassesOnWhatTheMasterSaysOfThePicture) {
+  send_slope();
+  const Present sent{{1}, 12, 34, 56, Filter::kBicubic, {64, 192}, false, true, 3, 7, 1.25f};
+  master_.to_compositor(role_, sent);
+  const auto bands = sent_bands();
+  ASSERT_EQ(bands.size(), 1u);
+  const Present& told = bands[0].present;
+  EXPECT_EQ(bands[0].encoding, 1);
+  EXPECT_EQ(told.epoch, sent.epoch);
+  EXPECT_EQ(told.picture, sent.picture);
+  EXPECT_EQ(told.viewer, sent.viewer);
+  EXPECT_EQ(told.serial, sent.serial);
+  EXPECT_EQ(told.filter, sent.filter);
+  EXPECT_EQ(told.size, sent.size);
+  EXPECT_EQ(told.lossless, sent.lossless);
+  EXPECT_EQ(told.final, sent.final);
+  EXPECT_EQ(told.cine_frame, sent.cine_frame);
+  EXPECT_EQ(told.cine_frames, sent.cine_frames);
+  EXPECT_EQ(told.estimated_error, sent.estimated_error);
 }
 
 }  // namespace

@@ -6,25 +6,25 @@
 #include <cmath>
 #include <functional>
 
+#include "tests/compositor/packed_samples.h"
+
 namespace goldthread {
 namespace {
 
 using Field = std::function<Sample(double x, double y)>;  // of pixel centres
 
-void place(SampleArray& array, TileId tile, Level from, Level to, const Field& field) {
-  const PixelRect rect = array.grid().rect(tile);
-  std::vector<Sample> samples;
-  for (const auto offset : new_samples({rect.width, rect.height}, from, to)) {
-    const PixelPosition position = position_of(rect, offset);
-    samples.push_back(field(position.x, position.y));
-  }
-  ASSERT_TRUE(array.place(tile, from, to, samples));
+constexpr Filter kFilters[] = {Filter::kBox, Filter::kBilinear, Filter::kBiquadratic,
+                               Filter::kPiecewiseQuadratic, Filter::kBicubic};
+
+void place(SampleArray& array, TileId tile, Step from, Step to, const Field& field) {
+  ASSERT_TRUE(array.place(
+      packed_grid(array.grid(), tile, from, to, [&](float x, float y) { return field(x, y); })));
 }
 
-/// Every tile at one level.
-SampleArray sampled(const TileGrid& grid, Level level, const Field& field) {
+/// Every tile with the grid of one step alone.
+SampleArray sampled(const TileGrid& grid, Step step, const Field& field) {
   SampleArray array(grid, band_of(grid, 0, 1));
-  for (std::uint32_t i = 0; i < grid.count(); ++i) place(array, {i}, kNoLevel, level, field);
+  for (std::uint32_t i = 0; i < grid.count(); ++i) place(array, {i}, kNoStep, step, field);
   return array;
 }
 
@@ -50,31 +50,61 @@ void for_each_pixel(const TileGrid& grid, const std::vector<float>& pixels, Chec
   }
 }
 
-TEST(Reconstruct, AtThePixelLevelGivesExactlyTheSamplesOverTheBackground) {
+TEST(Reconstruct, OfEveryPixelGivesExactlyTheSamplesOverTheBackgroundWhateverTheFilter) {
   const TileGrid grid = TileGrid::squares({100, 70}, 64);
   const Field field = [](double x, double y) {
     return Sample{float(x) * 0.001f, float(y) * 0.003f, 0.1f, float(x) / 128};
   };
-  const glm::dvec3 background{0.25, 0.5, 1};
-  for_each_pixel(grid, reconstruct(sampled(grid, kPixelLevel, field), background),
-                 [&](int x, int y, const float* pixel) {
-                   const Sample s = field(x + 0.5, y + 0.5);
-                   const float clear = 1 - s.alpha;
-                   ASSERT_EQ(pixel[0], s.red + clear * 0.25f);
-                   ASSERT_EQ(pixel[1], s.green + clear * 0.5f);
-                   ASSERT_EQ(pixel[2], s.blue + clear * 1.0f);
-                   ASSERT_EQ(pixel[3], s.alpha);
-                 });
+  for (const Filter filter : kFilters) {
+    for_each_pixel(grid, reconstruct(sampled(grid, kPixelStep, field), filter, {0.25, 0.5, 1}),
+                   [&](int x, int y, const float* pixel) {
+                     const Sample s = field(x + 0.5, y + 0.5);
+                     const float clear = 1 - s.alpha;
+                     ASSERT_EQ(pixel[0], s.red + clear * 0.25f);
+                     ASSERT_EQ(pixel[1], s.green + clear * 0.5f);
+                     ASSERT_EQ(pixel[2], s.blue + clear * 1.0f);
+                     ASSERT_EQ(pixel[3], s.alpha);
+                   });
+  }
 }
 
-TEST(Reconstruct, ReproducesLinearFunctionsExactlyAtEveryLevelAndTileSize) {
+TEST(Reconstruct, KeepsARaysResultWhereverOneWasCast) {
+  // Some pixels of a tile have rays of their own, as adaptive sampling leaves it.
+  const TileGrid grid = TileGrid::squares({64, 64}, 64);
+  const Sample own{0.125f, 0.5f, 0.75f, 1};
+  for (const Filter filter : kFilters) {
+    SampleArray array = sampled(grid, {1}, smooth);
+    ASSERT_TRUE(array.place(packed({0}, {1}, {2}, {{5, 7}, {16, 32}}, {own, own})));
+    const auto pixels = reconstruct(array, filter, kBlack);
+    for (const std::size_t at : {std::size_t{7 * 64 + 5}, std::size_t{32 * 64 + 16}}) {
+      EXPECT_EQ(pixels[4 * at], own.red);
+      EXPECT_EQ(pixels[4 * at + 1], own.green);
+      EXPECT_EQ(pixels[4 * at + 2], own.blue);
+    }
+  }
+}
+
+TEST(Reconstruct, FillsEachHoleByTheFilterThatIsAskedFor) {
+  const TileGrid grid = TileGrid::squares({64, 64}, 64);
+  const SampleArray array = sampled(grid, {1}, smooth);
+  const auto box = reconstruct(array, Filter::kBox, kBlack);
+  const auto bilinear = reconstruct(array, Filter::kBilinear, kBlack);
+  const auto bicubic = reconstruct(array, Filter::kBicubic, kBlack);
+  EXPECT_EQ(box[4 * 8], smooth(0.5, 0.5).red) << "a block's colour is its upper left sample's";
+  EXPECT_EQ(bilinear[4 * 8], (smooth(0.5, 0.5).red + smooth(16.5, 0.5).red) / 2);
+  EXPECT_NE(bicubic[4 * 8], bilinear[4 * 8]);
+  EXPECT_EQ(reconstruct(array, Filter::kBiquadratic, kBlack), bilinear)
+      << "halfway between two samples they say the same";
+}
+
+TEST(Reconstruct, ReproducesLinearFunctionsExactlyAtEverySpacingAndTileSize) {
   for (const TileGrid& grid : {TileGrid::squares({100, 70}, 64), TileGrid::squares({33, 17}, 16),
                                TileGrid::rows_of({50, 40})}) {
-    for (std::int8_t log2 = 0; log2 <= 4; ++log2) {
-      for_each_pixel(grid, reconstruct(sampled(grid, {log2}, linear), kBlack),
+    for (Step step{1}; step <= kPixelStep; step = step.next()) {
+      for_each_pixel(grid, reconstruct(sampled(grid, step, linear), Filter::kBilinear, kBlack),
                      [&](int x, int y, const float* pixel) {
                        const Sample s = linear(x + 0.5, y + 0.5);
-                       ASSERT_EQ(pixel[0], s.red) << x << " " << y << " level " << int(log2);
+                       ASSERT_EQ(pixel[0], s.red) << x << " " << y << " step " << step.value;
                        ASSERT_EQ(pixel[1], s.green);
                        ASSERT_EQ(pixel[2], s.blue);
                        ASSERT_EQ(pixel[3], 1);
@@ -83,9 +113,9 @@ TEST(Reconstruct, ReproducesLinearFunctionsExactlyAtEveryLevelAndTileSize) {
   }
 }
 
-double rms_error(const TileGrid& grid, Level level, const Field& field) {
+double rms_error(const TileGrid& grid, Step step, const Field& field) {
   double sum = 0;
-  for_each_pixel(grid, reconstruct(sampled(grid, level, field), kBlack),
+  for_each_pixel(grid, reconstruct(sampled(grid, step, field), Filter::kBilinear, kBlack),
                  [&](int x, int y, const float* pixel) {
                    const double error = double(pixel[0]) - double(field(x + 0.5, y + 0.5).red);
                    sum += error * error;
@@ -96,82 +126,62 @@ double rms_error(const TileGrid& grid, Level level, const Field& field) {
 TEST(Reconstruct, ConvergesWithTheSquareOfTheSpacing) {
   const TileGrid grid = TileGrid::squares({256, 256}, 64);
   // From 16 to 4 pixels: below, the pixels are too few of a square to show its mean error.
-  for (std::int8_t log2 = 4; log2 > 2; --log2) {
-    const double coarse = rms_error(grid, {log2}, smooth);
-    const double fine = rms_error(grid, {static_cast<std::int8_t>(log2 - 1)}, smooth);
-    EXPECT_NEAR(std::log2(coarse / fine), 2, 0.15) << "from level " << int(log2);
+  for (Step step{1}; step < Step{3}; step = step.next()) {
+    const double coarse = rms_error(grid, step, smooth);
+    const double fine = rms_error(grid, step.next(), smooth);
+    EXPECT_NEAR(std::log2(coarse / fine), 2, 0.15) << "from step " << step.value;
   }
 }
 
-TEST(Reconstruct, LeavesNoHoleBetweenTilesAtDifferentLevels) {
+TEST(Reconstruct, LeavesNoHoleBetweenTilesAtDifferentSteps) {
   const TileGrid grid = TileGrid::squares({192, 192}, 64);
   SampleArray array(grid, band_of(grid, 0, 1));
-  for (std::uint32_t i = 0; i < grid.count(); ++i) {
-    place(array, {i}, kNoLevel, {static_cast<std::int8_t>(i % 5)}, linear);
-  }
-  for_each_pixel(grid, reconstruct(array, kBlack), [](int x, int y, const float* pixel) {
-    ASSERT_EQ(pixel[0], linear(x + 0.5, y + 0.5).red) << x << " " << y;
-  });
+  for (std::uint32_t i = 0; i < grid.count(); ++i)
+    place(array, {i}, kNoStep, {static_cast<std::uint16_t>(1 + i % 5)}, linear);
+  for_each_pixel(grid, reconstruct(array, Filter::kBilinear, kBlack),
+                 [](int x, int y, const float* pixel) {
+                   ASSERT_EQ(pixel[0], linear(x + 0.5, y + 0.5).red) << x << " " << y;
+                 });
 }
 
 TEST(Reconstruct, ShowsTheBackgroundWhereATileHasNothingYet) {
-  const TileGrid grid = TileGrid::squares({128, 64}, 64);
+  const TileGrid grid = TileGrid::squares({192, 64}, 64);
+  const Sample own{0.125f, 0.25f, 0.5f, 1};
   SampleArray array(grid, band_of(grid, 0, 1));
-  place(array, {0}, kNoLevel, kCoarsestLevel, linear);
-  place(array, {1}, {4}, {3}, linear);  // without the coarser level it counts as nothing
-  for_each_pixel(grid, reconstruct(array, {0.25, 0.5, 0.75}), [](int x, int, const float* pixel) {
-    if (x < 64) return;
-    ASSERT_EQ(pixel[0], 0.25f);
-    ASSERT_EQ(pixel[1], 0.5f);
-    ASSERT_EQ(pixel[2], 0.75f);
-    ASSERT_EQ(pixel[3], 0);
-  });
+  place(array, {0}, kNoStep, {1}, linear);
+  // What came before the coarse samples cannot fill in anything, but is shown.
+  ASSERT_TRUE(array.place(packed({2}, {2}, {3}, {{5, 0}}, {own})));
+  for (const Filter filter : kFilters) {
+    const auto pixels = reconstruct(array, filter, {0.25, 0.5, 0.75});
+    for_each_pixel(grid, pixels, [&](int x, int y, const float* pixel) {
+      if (x < 64) return;
+      const bool cast = x == 128 + 5 && y == 0;
+      ASSERT_EQ(pixel[0], cast ? own.red : 0.25f);
+      ASSERT_EQ(pixel[1], cast ? own.green : 0.5f);
+      ASSERT_EQ(pixel[2], cast ? own.blue : 0.75f);
+      ASSERT_EQ(pixel[3], cast ? 1 : 0);
+    });
+  }
 }
 
 TEST(Reconstruct, GivesEachBandItsRowsOfThePicture) {
   const TileGrid grid = TileGrid::squares({100, 150}, 32);
-  const auto whole = reconstruct(sampled(grid, {2}, smooth), kBlack);
-  std::vector<float> joined;
-  for (int i = 0; i < 7; ++i) {
-    const Band band = band_of(grid, i, 7);
-    SampleArray array(grid, band);
-    const auto columns = static_cast<std::uint32_t>(grid.columns());
-    for (auto tile = std::uint32_t(band.first_row) * columns;
-         tile < std::uint32_t(band.last_row) * columns; ++tile) {
-      place(array, {tile}, kNoLevel, {2}, smooth);
+  for (const Filter filter : kFilters) {
+    const auto whole = reconstruct(sampled(grid, {3}, smooth), filter, kBlack);
+    std::vector<float> joined;
+    for (int i = 0; i < 7; ++i) {
+      const Band band = band_of(grid, i, 7);
+      SampleArray array(grid, band);
+      const auto columns = static_cast<std::uint32_t>(grid.columns());
+      for (auto tile = std::uint32_t(band.first_row) * columns;
+           tile < std::uint32_t(band.last_row) * columns; ++tile) {
+        place(array, {tile}, kNoStep, {3}, smooth);
+      }
+      const auto part = reconstruct(array, filter, kBlack);
+      joined.insert(joined.end(), part.begin(), part.end());
     }
-    const auto part = reconstruct(array, kBlack);
-    joined.insert(joined.end(), part.begin(), part.end());
+    EXPECT_EQ(joined, whole) << "to the bit";
   }
-  EXPECT_EQ(joined, whole) << "to the bit";
-}
-
-TEST(EstimatedError, IsZeroForLinearFunctions) {
-  for (std::int8_t log2 = 0; log2 <= 4; ++log2) {
-    const auto array = sampled(TileGrid::squares({200, 100}, 64), {log2}, linear);
-    EXPECT_EQ(estimate_squared_error(array), 0) << int(log2);
-  }
-}
-
-TEST(EstimatedError, OfNoSamplesIsZero) {
-  const TileGrid grid = TileGrid::squares({64, 64}, 64);
-  EXPECT_EQ(estimate_squared_error({grid, band_of(grid, 0, 1)}), 0);
-}
-
-TEST(EstimatedError, FallsWithTheFourthPowerOfTheSpacingWhereThePictureIsSmooth) {
-  const TileGrid grid = TileGrid::squares({256, 256}, 64);
-  for (std::int8_t log2 = 3; log2 > 1; --log2) {
-    const double coarse = estimate_squared_error(sampled(grid, {log2}, smooth));
-    const double fine =
-        estimate_squared_error(sampled(grid, {static_cast<std::int8_t>(log2 - 1)}, smooth));
-    EXPECT_NEAR(std::log2(coarse / fine), 4, 0.3) << "from level " << int(log2);
-  }
-}
-
-TEST(EstimatedError, IsNotZeroForATileOfTwoSpacings) {
-  // Of the tile's own samples no three lie in a row; with the replicated ones they do.
-  const auto array = sampled(TileGrid::squares({128, 128}, 32), kCoarsestLevel, smooth);
-  EXPECT_GT(estimate_squared_error(array), 0);
 }
 
 }  // namespace

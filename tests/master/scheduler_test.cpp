@@ -4,30 +4,29 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <map>
+#include <limits>
+#include <numeric>
+#include <optional>
 #include <queue>
 #include <random>
 #include <set>
-#include <tuple>
-
-#include "master/levels.h"
+#include <utility>
 
 namespace goldthread {
 namespace {
 
-using Key = std::pair<std::uint32_t, int>;  // tile, level
-
-Key key_of(const Quantum& quantum) { return {quantum.tile.value, quantum.to.log2_spacing}; }
+constexpr Step kFirst{1}, kSecond{2};
 
 /// A grid of `tiles` equal tiles in one row.
 TileGrid row_of(int tiles) { return TileGrid::squares({64 * tiles, 64}, 64); }
 
-/// A history in which each ray of tile i costs costs[i] µs.
-CostHistory history(const TileGrid& grid, const std::vector<int>& costs) {
+/// A history in which tile i took costs[i] µs for each of the first `steps` steps.
+CostHistory history(const TileGrid& grid, const std::vector<int>& costs, int steps = 1) {
   CostHistory result;
   result.fit(grid);
-  for (std::uint32_t i = 0; i < costs.size(); ++i) {
-    result.record({i}, 1, std::chrono::microseconds(costs[i]));
+  for (Step step{1}; step.value <= steps; step = step.next()) {
+    for (std::uint32_t i = 0; i < costs.size(); ++i)
+      result.record({i}, step, std::chrono::microseconds(costs[i]));
   }
   return result;
 }
@@ -38,153 +37,287 @@ std::vector<int> random_costs(std::size_t count, std::mt19937& random) {
   return costs;
 }
 
-Scheduler begun(std::vector<int> capacity, const TileGrid& grid, const std::vector<Level>& levels,
+Scheduler begun(const std::vector<int>& capacity, const TileGrid& grid,
                 const CostHistory& costs = {}) {
-  Scheduler scheduler(std::move(capacity));
-  scheduler.begin_view(grid, levels, costs);
+  Scheduler scheduler(capacity);
+  scheduler.begin_view(grid, costs);
   return scheduler;
 }
 
-TEST(Scheduler, GivesOutDescendingPredictedCostWithinALevelAndLevelsInOrder) {
+/// All that `worker` is given now.
+std::vector<std::uint32_t> taken_by(Scheduler& scheduler, int worker) {
+  std::vector<std::uint32_t> tiles;
+  while (const auto quantum = scheduler.next(worker)) tiles.push_back(quantum->tile.value);
+  return tiles;
+}
+
+void finish(Scheduler& scheduler, int worker, const std::vector<std::uint32_t>& tiles,
+            double squared_error = 1) {
+  for (const std::uint32_t tile : tiles)
+    ASSERT_TRUE(scheduler.done(worker, {tile}, scheduler.step(), squared_error));
+}
+
+/// All that `worker` is given until there is nothing left for it, each finished before the next.
+std::vector<std::uint32_t> worked_off_by(Scheduler& scheduler, int worker) {
+  std::vector<std::uint32_t> tiles;
+  while (const auto quantum = scheduler.next(worker)) {
+    tiles.push_back(quantum->tile.value);
+    EXPECT_TRUE(scheduler.done(worker, quantum->tile, quantum->to, 1));
+  }
+  return tiles;
+}
+
+using Tiles = std::vector<std::uint32_t>;
+
+TEST(Scheduler, GivesOutDescendingPredictedCostAtTheFirstStep) {
   std::mt19937 random(1);
   const TileGrid grid = row_of(50);
   const CostHistory costs = history(grid, random_costs(grid.count(), random));
-  const auto levels = progressive_levels();
-  Scheduler scheduler = begun({1000}, grid, levels, costs);
-  Level from = kNoLevel;
-  for (const Level level : levels) {
-    double before = std::numeric_limits<double>::infinity();
-    for (std::uint32_t i = 0; i < grid.count(); ++i) {
-      const auto quantum = scheduler.next(0);
-      ASSERT_TRUE(quantum);
-      EXPECT_EQ(quantum->from, from);
-      EXPECT_EQ(quantum->to, level);
-      const double cost = costs.predict_us(quantum->tile, 1);
-      EXPECT_LE(cost, before);
-      before = cost;
-    }
-    from = level;
+  Scheduler scheduler = begun({1000}, grid, costs);
+  EXPECT_EQ(scheduler.step(), kFirst);
+  double before = std::numeric_limits<double>::infinity();
+  for (std::uint32_t i = 0; i < grid.count(); ++i) {
+    const auto quantum = scheduler.next(0);
+    ASSERT_TRUE(quantum);
+    EXPECT_EQ(quantum->from, kNoStep);
+    EXPECT_EQ(quantum->to, kFirst);
+    const double cost = costs.predict_us(quantum->tile, kFirst);
+    EXPECT_LE(cost, before);
+    before = cost;
   }
   EXPECT_FALSE(scheduler.next(0));
 }
 
 TEST(Scheduler, KeepsTheOrderOfTilesThatCostTheSame) {
-  Scheduler scheduler = begun({100}, row_of(20), direct_levels());
+  Scheduler scheduler = begun({100}, row_of(20));
   for (std::uint32_t i = 0; i < 20; ++i) EXPECT_EQ(scheduler.next(0)->tile, TileId{i});
 }
 
-TEST(Scheduler, CountsWhatIsDoneAtEachLevel) {
-  const TileGrid grid = row_of(3);
-  Scheduler scheduler = begun({100}, grid, progressive_levels());
-  EXPECT_EQ(scheduler.open(), 15u);
-  for (std::size_t done = 1; done <= 15; ++done) {
-    const auto quantum = scheduler.next(0);
-    ASSERT_TRUE(scheduler.done(0, quantum->tile, quantum->to));
-    EXPECT_EQ(scheduler.open(), 15 - done);
-    EXPECT_EQ(scheduler.done_at(quantum->to), (done - 1) % 3 + 1);
-    EXPECT_EQ(scheduler.finished(), done == 15);
+TEST(Scheduler, GivesOutDescendingErrorPerCostAtLaterSteps) {
+  std::mt19937 random(2);
+  const TileGrid grid = row_of(50);
+  const CostHistory costs = history(grid, random_costs(grid.count(), random), 2);
+  std::vector<double> errors;
+  for (const int error : random_costs(grid.count(), random)) errors.push_back(error);
+  Scheduler scheduler = begun({1000}, grid, costs);
+  for (Step step = kFirst; step <= Step{4}; step = step.next()) {
+    double before = std::numeric_limits<double>::infinity();
+    for (const std::uint32_t tile : taken_by(scheduler, 0)) {
+      if (step > kFirst) {
+        const double urgency = errors[tile] / costs.predict_us({tile}, step);
+        EXPECT_LE(urgency, before);
+        before = urgency;
+      }
+      // The next step goes by what this one has left.
+      errors[tile] = step == kFirst ? errors[tile] : errors[tile] / (1 + tile % 7);
+      ASSERT_TRUE(scheduler.done(0, {tile}, step, errors[tile]));
+    }
+    ASSERT_TRUE(scheduler.finished());
+    scheduler.open_step(costs);
+  }
+}
+
+TEST(Scheduler, OpensEachStepWithAllTilesAndCountsThemDone) {
+  Scheduler scheduler = begun({100}, row_of(3));
+  for (Step step = kFirst; step <= Step{5}; step = step.next()) {
+    EXPECT_EQ(scheduler.step(), step);
+    for (std::size_t open = 3; open > 0; --open) {
+      EXPECT_EQ(scheduler.open(), open);
+      EXPECT_FALSE(scheduler.finished());
+      const auto quantum = scheduler.next(0);
+      ASSERT_TRUE(quantum);
+      EXPECT_EQ(quantum->from.next(), step);
+      EXPECT_EQ(quantum->to, step);
+      ASSERT_TRUE(scheduler.done(0, quantum->tile, quantum->to, 1));
+    }
+    EXPECT_TRUE(scheduler.finished());
+    EXPECT_FALSE(scheduler.next(0)) << "the next step is not open yet";
+    scheduler.open_step({});
   }
 }
 
 TEST(Scheduler, GivesAWorkerNoMoreThanItsCapacity) {
-  Scheduler scheduler = begun({2, 0, 3}, row_of(10), direct_levels());
+  Scheduler scheduler = begun({2, 0, 3}, row_of(10));
   EXPECT_TRUE(scheduler.next(0));
   const auto second = scheduler.next(0);
   EXPECT_TRUE(second);
   EXPECT_FALSE(scheduler.next(0));
   EXPECT_FALSE(scheduler.next(1));
-  EXPECT_TRUE(scheduler.done(0, second->tile, second->to));
+  EXPECT_TRUE(scheduler.done(0, second->tile, second->to, 1));
   EXPECT_TRUE(scheduler.next(0));
   EXPECT_FALSE(scheduler.next(0));
 }
 
 TEST(Scheduler, IgnoresWhatAWorkerDoesNotHold) {
-  Scheduler scheduler = begun({2, 2}, row_of(4), progressive_levels());
+  Scheduler scheduler = begun({2, 2}, row_of(4));
   const Quantum held = *scheduler.next(0);
-  EXPECT_FALSE(scheduler.done(1, held.tile, held.to)) << "another worker's";
-  EXPECT_FALSE(scheduler.done(0, held.tile, kPixelLevel)) << "another level";
-  EXPECT_FALSE(scheduler.done(0, {99}, held.to)) << "no such tile";
-  EXPECT_EQ(scheduler.open(), 20u);
-  EXPECT_TRUE(scheduler.done(0, held.tile, held.to));
-  EXPECT_FALSE(scheduler.done(0, held.tile, held.to)) << "a second time";
-  EXPECT_EQ(scheduler.open(), 19u);
-  EXPECT_EQ(scheduler.done_at(held.to), 1u);
+  EXPECT_FALSE(scheduler.done(1, held.tile, held.to, 1)) << "another worker's";
+  EXPECT_FALSE(scheduler.done(0, held.tile, kSecond, 1)) << "another step";
+  EXPECT_FALSE(scheduler.done(0, held.tile, kNoStep, 1)) << "no step";
+  EXPECT_FALSE(scheduler.done(0, {99}, held.to, 1)) << "no such tile";
+  EXPECT_EQ(scheduler.open(), 4u);
+  EXPECT_TRUE(scheduler.done(0, held.tile, held.to, 1));
+  EXPECT_FALSE(scheduler.done(0, held.tile, held.to, 1)) << "a second time";
+  EXPECT_EQ(scheduler.open(), 3u);
 }
 
 TEST(Scheduler, ForgetsTheOldViewWhenANewOneBegins) {
-  Scheduler scheduler = begun({3}, row_of(4), direct_levels());
+  Scheduler scheduler = begun({3, 3}, row_of(4));
   const Quantum old = *scheduler.next(0);
-  scheduler.begin_view(row_of(2), direct_levels(), {});
+  scheduler.begin_view(row_of(2), {});
+  EXPECT_EQ(scheduler.step(), kFirst);
   EXPECT_EQ(scheduler.open(), 2u);
-  EXPECT_FALSE(scheduler.done(0, old.tile, old.to)) << "in flight from the old view";
-  EXPECT_EQ(scheduler.next(0)->tile, TileId{0});
-  EXPECT_EQ(scheduler.next(0)->tile, TileId{1});
-  EXPECT_FALSE(scheduler.next(0));
+  EXPECT_FALSE(scheduler.done(0, old.tile, old.to, 1)) << "in flight from the old view";
+  EXPECT_EQ(taken_by(scheduler, 1), (Tiles{0, 1})) << "and nobody's any more";
 }
 
-TEST(Scheduler, OfAViewWithoutLevelsIsFinished) {
-  Scheduler scheduler = begun({3}, row_of(4), {});
+TEST(Scheduler, GivesOutNothingWithoutAViewOrOfOneThatIsCancelled) {
+  Scheduler scheduler({3});
   EXPECT_TRUE(scheduler.finished());
   EXPECT_FALSE(scheduler.next(0));
+  scheduler.begin_view(row_of(9), {});
+  finish(scheduler, 0, taken_by(scheduler, 0));
+  const Quantum held = *scheduler.next(0);
+  scheduler.cancel();
+  EXPECT_TRUE(scheduler.finished());
+  EXPECT_FALSE(scheduler.next(0));
+  EXPECT_FALSE(scheduler.done(0, held.tile, held.to, 1));
 }
 
-TEST(Scheduler, GivesALostWorkersTilesOutAgainFirstOnceAndInTheSameOrder) {
-  Scheduler scheduler = begun({3, 100}, row_of(10), progressive_levels());
-  std::vector<Quantum> lost;
-  while (const auto quantum = scheduler.next(0)) lost.push_back(*quantum);
+TEST(Scheduler, LeavesATileWithTheWorkerThatHoldsItsState) {
+  Scheduler scheduler = begun({3, 2}, row_of(5));
+  finish(scheduler, 1, taken_by(scheduler, 1));
+  finish(scheduler, 0, taken_by(scheduler, 0));
+  for (Step step = kSecond; step <= Step{4}; step = step.next()) {
+    scheduler.open_step({});
+    EXPECT_EQ(taken_by(scheduler, 0), (Tiles{2, 3, 4}));
+    EXPECT_EQ(taken_by(scheduler, 1), (Tiles{0, 1}));
+    finish(scheduler, 0, {2, 3, 4});
+    finish(scheduler, 1, {0, 1});
+  }
+}
+
+/// Worker 0, of one thread and a spare place, holds ten tiles at the second step; worker 1 none.
+Scheduler unbalanced(const CostHistory& costs) {
+  Scheduler scheduler = begun({2, 2}, row_of(10), costs);
+  worked_off_by(scheduler, 0);
+  scheduler.open_step(costs);
+  return scheduler;
+}
+
+TEST(Scheduler, LetsAnIdleWorkerTakeOverWhereItIsQuickerThanWaiting) {
+  // Each step of a tile costs 100 µs: a newcomer takes 200 µs. That is less than the owner needs
+  // for more than two of its ten tiles.
+  Scheduler scheduler = unbalanced(history(row_of(10), std::vector(10, 100), 2));
+  EXPECT_EQ(worked_off_by(scheduler, 1), (Tiles{9, 8, 7, 6, 5, 4, 3, 2})) << "the least urgent";
+  EXPECT_EQ(worked_off_by(scheduler, 0), (Tiles{0, 1}));
+  EXPECT_TRUE(scheduler.finished());
+}
+
+TEST(Scheduler, LeavesATileThatWouldTakeLongerToCastAgainThanToWaitFor) {
+  CostHistory costs = history(row_of(10), std::vector(10, 1000));
+  for (std::uint32_t i = 0; i < 10; ++i) costs.record({i}, kSecond, std::chrono::microseconds(100));
+  Scheduler scheduler = unbalanced(costs);
+  EXPECT_FALSE(scheduler.next(1)) << "1100 µs instead of 1000";
+  EXPECT_EQ(worked_off_by(scheduler, 0).size(), 10u);
+}
+
+TEST(Scheduler, LeavesATakenOverTileWithItsNewOwner) {
+  const CostHistory costs = history(row_of(10), std::vector(10, 100), 2);
+  Scheduler scheduler = unbalanced(costs);
+  const Tiles taken = taken_by(scheduler, 1);
+  EXPECT_EQ(taken, (Tiles{9, 8}));
+  finish(scheduler, 1, taken);
+  worked_off_by(scheduler, 0);
+  scheduler.open_step(costs);
+  EXPECT_EQ(taken_by(scheduler, 1), (Tiles{8, 9}));
+}
+
+TEST(Scheduler, CountsOwnersThreadsWhereItCompares) {
+  // Of eight threads a tile of ten is waited for a quarter of a step: quicker than any newcomer.
+  const CostHistory costs = history(row_of(10), std::vector(10, 100), 2);
+  Scheduler scheduler = begun({9, 2}, row_of(10), costs);
+  worked_off_by(scheduler, 0);
+  scheduler.open_step(costs);
+  EXPECT_FALSE(scheduler.next(1));
+}
+
+TEST(Scheduler, GivesALostWorkersTilesOutAgainFirstAndOnce) {
+  Scheduler scheduler = begun({3, 100}, row_of(10));
+  const Tiles lost = taken_by(scheduler, 0);
   ASSERT_EQ(lost.size(), 3u);
   ASSERT_TRUE(scheduler.next(1));
   scheduler.worker_lost(0);
   EXPECT_FALSE(scheduler.next(0)) << "the dead get nothing";
-  EXPECT_FALSE(scheduler.done(0, lost[0].tile, lost[0].to)) << "nor does what they send count";
-  for (const Quantum& quantum : lost) EXPECT_EQ(scheduler.next(1), quantum);
-  EXPECT_EQ(scheduler.next(1)->tile, TileId{4});
-  EXPECT_EQ(scheduler.open(), 50u);
+  EXPECT_FALSE(scheduler.done(0, {lost[0]}, kFirst, 1)) << "nor does what they send count";
+  EXPECT_EQ(taken_by(scheduler, 1), (Tiles{0, 1, 2, 4, 5, 6, 7, 8, 9}));
+  EXPECT_EQ(scheduler.open(), 10u);
 }
 
-TEST(Scheduler, GivesOutCoarseTilesOfLostWorkersBeforeFineOnes) {
-  // Worker 0 takes the last coarse tile and the first fine one, worker 1 one of each as well.
-  Scheduler scheduler = begun({2, 2, 100}, row_of(2), progressive_levels());
-  const Quantum coarse = *scheduler.next(0);
-  const Quantum coarse_too = *scheduler.next(1);
-  const Quantum fine = *scheduler.next(0);
-  const Quantum fine_too = *scheduler.next(1);
-  scheduler.worker_lost(1);
+TEST(Scheduler, GivesOutWhatALostWorkerHeldBeforeWhatWaitedForIt) {
+  Scheduler scheduler = begun({2, 9}, row_of(6));
+  worked_off_by(scheduler, 0);
+  scheduler.open_step({});
+  ASSERT_EQ(taken_by(scheduler, 0), (Tiles{0, 1}));
+  EXPECT_FALSE(scheduler.next(1)) << "of unknown cost";
   scheduler.worker_lost(0);
-  for (const Quantum& quantum : {coarse, coarse_too, fine, fine_too}) {
-    EXPECT_EQ(scheduler.next(2), quantum);
-  }
+  EXPECT_EQ(taken_by(scheduler, 1), (Tiles{0, 1, 2, 3, 4, 5}));
+}
+
+TEST(Scheduler, ForgetsThatALostWorkerHeldTheStateOfATile) {
+  Scheduler scheduler = begun({3, 3}, row_of(6));
+  const Tiles own = taken_by(scheduler, 0), others = taken_by(scheduler, 1);
+  finish(scheduler, 0, own);
+  scheduler.worker_lost(0);
+  finish(scheduler, 1, others);
+  EXPECT_TRUE(scheduler.finished()) << "what it had done counts";
+  scheduler.open_step({});
+  EXPECT_EQ(worked_off_by(scheduler, 1).size(), 6u);
 }
 
 TEST(Scheduler, DoesNotBringALostWorkerBackWithTheNextView) {
-  Scheduler scheduler = begun({3, 3}, row_of(4), direct_levels());
+  Scheduler scheduler = begun({3, 3}, row_of(4));
   scheduler.worker_lost(0);
-  scheduler.begin_view(row_of(4), direct_levels(), {});
+  scheduler.begin_view(row_of(4), {});
   EXPECT_FALSE(scheduler.next(0));
   EXPECT_TRUE(scheduler.next(1));
 }
 
-/// Drives a scheduler through a random interleaving and checks its laws at each step.
+/// Drives a scheduler through a random interleaving of several steps and checks its laws.
 class RandomRun {
  public:
   explicit RandomRun(unsigned seed) : random_(seed) {
     const int workers = uniform(1, 6);
-    std::vector<int> capacity;
-    for (int w = 0; w < workers; ++w) capacity.push_back(uniform(1, 4));
-    capacity_ = capacity;
-    held_.resize(capacity.size());
+    for (int w = 0; w < workers; ++w) capacity_.push_back(uniform(1, 4));
+    held_.resize(capacity_.size());
     grid_ = TileGrid::squares({uniform(1, 300), uniform(1, 300)}, 64);
-    const auto costs = history(grid_, random_costs(grid_.count(), random_));
-    levels_ = uniform(0, 1) == 0 ? direct_levels() : progressive_levels();
-    scheduler_.emplace(std::move(capacity));
-    scheduler_->begin_view(grid_, levels_, costs);
+    owner_.assign(grid_.count(), -1);
+    costs_ = history(grid_, random_costs(grid_.count(), random_), uniform(0, kSteps));
+    scheduler_.emplace(capacity_);
+    scheduler_->begin_view(grid_, costs_);
   }
 
   void run() {
+    for (int step = 1; step <= kSteps; ++step) {
+      run_step();
+      if (::testing::Test::HasFatalFailure()) return;
+      ASSERT_EQ(done_.size(), grid_.count()) << "step " << step;
+      if (step < kSteps) scheduler_->open_step(costs_);
+      done_.clear();
+      given_.clear();
+    }
+  }
+
+ private:
+  static constexpr int kSteps = 6;
+
+  int uniform(int first, int last) { return std::uniform_int_distribution(first, last)(random_); }
+
+  void run_step() {
     while (!scheduler_->finished() && !::testing::Test::HasFatalFailure()) {
       const auto worker = static_cast<std::size_t>(uniform(0, int(capacity_.size()) - 1));
       const int dice = uniform(0, 99);
-      if (dice < 2)
+      if (dice < 1)
         lose(worker);
       else if (dice < 10)
         lie(worker);
@@ -193,63 +326,77 @@ class RandomRun {
       else
         finish(worker);
     }
-    EXPECT_EQ(done_.size(), grid_.count() * levels_.size());
-    EXPECT_TRUE(lost_.empty());
-    for (const Level level : levels_) EXPECT_EQ(scheduler_->done_at(level), grid_.count());
   }
-
- private:
-  int uniform(int first, int last) { return std::uniform_int_distribution(first, last)(random_); }
-
   void give(std::size_t worker) {
     const bool room = std::cmp_less(held_[worker].size(), capacity_[worker]);
-    const bool work = !lost_.empty() || given_.size() < grid_.count() * levels_.size();
+    const bool own = any_open([&](int owner) { return owner == int(worker); });
+    const bool free = any_open([&](int owner) { return owner < 0; });
     const auto quantum = scheduler_->next(static_cast<int>(worker));
-    ASSERT_EQ(quantum.has_value(), room && work) << "idle while there is work, or too much of it";
-    if (!quantum) return;
-    const Key key = key_of(*quantum);
-    if (lost_.empty()) {
-      ASSERT_TRUE(given_.insert(key).second) << "given out twice";
-    } else {
-      ASSERT_EQ(lost_.erase(key), 1u) << "lost tiles come first";
+    if (!quantum) {
+      ASSERT_FALSE(room && (own || free)) << "idle while there is work";
+      return;
     }
+    ASSERT_TRUE(room);
+    const std::uint32_t tile = quantum->tile.value;
+    ASSERT_EQ(quantum->to, scheduler_->step());
+    ASSERT_EQ(quantum->from.next(), quantum->to);
+    ASSERT_TRUE(given_.insert(tile).second) << "given out twice";
+    ASSERT_FALSE(done_.contains(tile));
+    if (owner_[tile] != int(worker)) {
+      ASSERT_FALSE(own) << "its own tiles come first";
+    }
+    if (owner_[tile] >= 0 && owner_[tile] != int(worker)) {
+      ASSERT_FALSE(free) << "nobody's tiles come before another's";
+    }
+    owner_[tile] = static_cast<int>(worker);
     held_[worker].push_back(*quantum);
+  }
+  /// Whether there is a tile that nobody holds or has done, of such an owner.
+  template <class Predicate>
+  bool any_open(Predicate of_owner) const {
+    for (std::uint32_t tile = 0; tile < grid_.count(); ++tile) {
+      if (!given_.contains(tile) && of_owner(owner_[tile])) return true;
+    }
+    return false;
   }
   void finish(std::size_t worker) {
     if (held_[worker].empty()) return;
     const auto at = static_cast<std::size_t>(uniform(0, int(held_[worker].size()) - 1));
     const Quantum quantum = held_[worker][at];
     held_[worker].erase(held_[worker].begin() + std::ptrdiff_t(at));
-    ASSERT_TRUE(scheduler_->done(static_cast<int>(worker), quantum.tile, quantum.to));
-    ASSERT_TRUE(done_.insert(key_of(quantum)).second) << "done twice";
-    ASSERT_EQ(scheduler_->open(), grid_.count() * levels_.size() - done_.size());
+    ASSERT_TRUE(
+        scheduler_->done(static_cast<int>(worker), quantum.tile, quantum.to, uniform(0, 1000)));
+    ASSERT_TRUE(done_.insert(quantum.tile.value).second) << "done twice";
+    ASSERT_EQ(scheduler_->open(), grid_.count() - done_.size());
   }
   void lie(std::size_t worker) {
     const TileId tile{static_cast<std::uint32_t>(uniform(0, int(grid_.count())))};
-    const Level level{static_cast<std::int8_t>(uniform(-1, 5))};
+    const Step step{static_cast<std::uint16_t>(uniform(0, kSteps + 1))};
     for (const Quantum& quantum : held_[worker]) {
-      if (quantum.tile == tile && quantum.to == level) return;
+      if (quantum.tile == tile && quantum.to == step) return;
     }
-    ASSERT_FALSE(scheduler_->done(static_cast<int>(worker), tile, level));
+    ASSERT_FALSE(scheduler_->done(static_cast<int>(worker), tile, step, 0));
   }
   void lose(std::size_t worker) {
     if (std::count_if(capacity_.begin(), capacity_.end(), [](int c) { return c > 0; }) < 2) return;
     scheduler_->worker_lost(static_cast<int>(worker));
-    for (const Quantum& quantum : held_[worker]) lost_.insert(key_of(quantum));
+    for (const Quantum& quantum : held_[worker]) given_.erase(quantum.tile.value);
     held_[worker].clear();
     capacity_[worker] = 0;
+    std::replace(owner_.begin(), owner_.end(), static_cast<int>(worker), -1);
   }
 
   std::mt19937 random_;
   TileGrid grid_;
-  std::vector<Level> levels_;
+  CostHistory costs_;
   std::vector<int> capacity_;
   std::optional<Scheduler> scheduler_;
   std::vector<std::vector<Quantum>> held_;
-  std::set<Key> given_, done_, lost_;
+  std::vector<int> owner_;                ///< of each tile's state
+  std::set<std::uint32_t> given_, done_;  ///< of the open step; what is done was given
 };
 
-TEST(Scheduler, KeepsItsLawsThroughAnyInterleavingAndLossOfWorkers) {
+TEST(Scheduler, TakesEachTileThroughEachStepOnceInAnyInterleavingAndLossOfWorkers) {
   for (unsigned seed = 0; seed < 400; ++seed) {
     SCOPED_TRACE(seed);
     RandomRun(seed).run();
@@ -257,44 +404,59 @@ TEST(Scheduler, KeepsItsLawsThroughAnyInterleavingAndLossOfWorkers) {
   }
 }
 
-struct Simulated {
-  double makespan = 0;
-  std::size_t quanta = 0;
-  double busy = 0;
-};
-
 /// Workers of one thread each that take exactly as long as predicted; each holds `capacity`.
-Simulated simulate(int workers, int capacity, const TileGrid& grid,
-                   const std::vector<Level>& levels, const std::vector<int>& costs) {
-  Scheduler scheduler(std::vector<int>(static_cast<std::size_t>(workers), capacity));
-  scheduler.begin_view(grid, levels, history(grid, costs));
-  std::vector<std::queue<Quantum>> held(static_cast<std::size_t>(workers));
-  using Finish = std::pair<double, int>;
-  std::priority_queue<Finish, std::vector<Finish>, std::greater<>> running;
-  const auto cost_of = [&](const Quantum& quantum) { return costs[quantum.tile.value]; };
-  const auto supply = [&](int worker, double now) {
-    auto& queue = held[static_cast<std::size_t>(worker)];
-    const bool idle = queue.empty();
-    while (const auto quantum = scheduler.next(worker)) queue.push(*quantum);
-    if (idle && !queue.empty()) running.push({now + cost_of(queue.front()), worker});
-  };
-  for (int w = 0; w < workers; ++w) supply(w, 0);
-  Simulated result;
-  while (!running.empty()) {
-    const auto [now, worker] = running.top();
-    running.pop();
-    auto& queue = held[static_cast<std::size_t>(worker)];
-    EXPECT_TRUE(scheduler.done(worker, queue.front().tile, queue.front().to));
-    result.busy += cost_of(queue.front());
-    queue.pop();
-    if (!queue.empty()) running.push({now + cost_of(queue.front()), worker});
-    supply(worker, now);
-    result.makespan = now;
-    ++result.quanta;
+class Simulation {
+ public:
+  Simulation(int workers, int capacity, const TileGrid& grid, std::vector<int> costs)
+      : grid_(grid),
+        costs_(std::move(costs)),
+        scheduler_(std::vector<int>(static_cast<std::size_t>(workers), capacity)),
+        held_(static_cast<std::size_t>(workers)),
+        owner_(grid.count(), -1) {
+    scheduler_.begin_view(grid_, history(grid_, costs_));
   }
-  EXPECT_TRUE(scheduler.finished());
-  return result;
-}
+  /// From its begin until its last tile is done.
+  double run_step() {
+    if (scheduler_.finished()) scheduler_.open_step(history(grid_, costs_));
+    double now = 0;
+    for (std::size_t w = 0; w < held_.size(); ++w) supply(w, 0);
+    while (!running_.empty()) {
+      const auto [end, worker] = running_.top();
+      running_.pop();
+      now = end;
+      auto& queue = held_[worker];
+      const Quantum quantum = queue.front().first;
+      EXPECT_TRUE(scheduler_.done(static_cast<int>(worker), quantum.tile, quantum.to, 1));
+      queue.pop();
+      if (!queue.empty()) running_.push({now + queue.front().second, worker});
+      supply(worker, now);
+    }
+    EXPECT_TRUE(scheduler_.finished());
+    return now;
+  }
+
+ private:
+  using Finish = std::pair<double, std::size_t>;
+
+  void supply(std::size_t worker, double now) {
+    auto& queue = held_[worker];
+    const bool idle = queue.empty();
+    while (const auto quantum = scheduler_.next(static_cast<int>(worker))) {
+      int& owner = owner_[quantum->tile.value];
+      const int steps = std::cmp_equal(owner, worker) ? 1 : quantum->to.value;
+      owner = static_cast<int>(worker);
+      queue.push({*quantum, double(steps) * costs_[quantum->tile.value]});
+    }
+    if (idle && !queue.empty()) running_.push({now + queue.front().second, worker});
+  }
+
+  TileGrid grid_;
+  std::vector<int> costs_;  ///< of any step
+  Scheduler scheduler_;
+  std::vector<std::queue<std::pair<Quantum, double>>> held_;  ///< with what each costs
+  std::vector<int> owner_;
+  std::priority_queue<Finish, std::vector<Finish>, std::greater<>> running_;
+};
 
 /// The least makespan of all assignments, by trying each.
 double optimum(std::vector<double>& loads, const std::vector<int>& costs, std::size_t at) {
@@ -310,7 +472,7 @@ double optimum(std::vector<double>& loads, const std::vector<int>& costs, std::s
   return best;
 }
 
-TEST(Scheduler, IsWithinGrahamsBoundOfTheOptimum) {
+TEST(Scheduler, IsWithinGrahamsBoundOfTheOptimumAtTheFirstStep) {
   // R. L. Graham, Bounds on multiprocessing timing anomalies (1969): 4/3 − 1/(3m), longest first.
   std::mt19937 random(3);
   for (int trial = 0; trial < 300; ++trial) {
@@ -319,7 +481,7 @@ TEST(Scheduler, IsWithinGrahamsBoundOfTheOptimum) {
     const auto costs = random_costs(static_cast<std::size_t>(tiles), random);
     std::vector<double> loads(static_cast<std::size_t>(workers), 0);
     const double best = optimum(loads, costs, 0);
-    const double got = simulate(workers, 1, row_of(tiles), direct_levels(), costs).makespan;
+    const double got = Simulation(workers, 1, row_of(tiles), costs).run_step();
     EXPECT_LE(got, (4.0 / 3 - 1.0 / (3 * workers)) * best + 1e-9);
     EXPECT_GE(got, best - 1e-9);
   }
@@ -330,12 +492,13 @@ TEST(Scheduler, SuppliesFourThousandWorkers) {
   const TileGrid grid = TileGrid::squares({7680, 4320}, 32);
   std::mt19937 random(4);
   const auto costs = random_costs(grid.count(), random);
+  const double all = std::accumulate(costs.begin(), costs.end(), 0.0);
   constexpr int kWorkers = 4096;
-  const auto levels = progressive_levels();
-  const Simulated run = simulate(kWorkers, 2, grid, levels, costs);
-  EXPECT_EQ(run.quanta, grid.count() * levels.size());
-  // With one spare tile each, a worker ends at most two of the longest tiles after the mean.
-  EXPECT_LE(run.makespan, run.busy / kWorkers + 2 * 1000);
+  Simulation simulation(kWorkers, 2, grid, costs);
+  // With one spare tile each, a worker ends at most two of the longest tiles after the mean; and
+  // later steps leave each with what it has.
+  for (int step = 1; step <= 3; ++step)
+    EXPECT_LE(simulation.run_step(), all / kWorkers + 2 * 1000) << "step " << step;
 }
 
 }  // namespace

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "worker/compute_pool.h"
-#include "worker/cast_quantum.h"
 
 #include <gtest/gtest.h>
 
@@ -9,22 +8,36 @@
 #include <stdexcept>
 
 #include "tests/worker/fake_source.h"
+#include "worker/refine_tile.h"
 
 namespace goldthread {
 namespace {
 
 const TileGrid kGrid = TileGrid::squares({256, 256}, 64);
-/// Batches of a whole tile at the pixel level.
-constexpr int kBatchesOfATile = 64 * 64 / int(kBatchRaysOfQuantum);
 
 std::shared_ptr<const CastView> view(std::uint32_t epoch,
                                      std::shared_ptr<const SampleSource> source) {
-  return std::make_shared<const CastView>(CastView{{epoch}, kGrid, std::move(source)});
+  const Refinement every_pixel{.sampling = Sampling::kEveryPixel};
+  return std::make_shared<const CastView>(
+      CastView{{epoch}, kGrid, every_pixel, {}, std::move(source)});
 }
 
+/// All pixels of a tile.
 RenderTile tile(std::uint32_t epoch, std::uint32_t id) {
-  return {{epoch}, {id}, kNoLevel, kPixelLevel};
+  return {{epoch}, {id}, kNoStep, kFirstAdaptiveStep};
 }
+
+/// What such a tile takes, and in how many batches.
+struct WholeTile {
+  WholeTile() {
+    const auto source = std::make_shared<CountingSource>();
+    rays = refine_tile(*view(1, source), tile(1, 0), nullptr, [] { return false; })->counts.rays;
+    batches = source->batches;
+  }
+  std::uint64_t rays = 0;
+  int batches = 0;
+};
+const WholeTile kWhole;
 
 /// A pool whose notifications a test can wait for.
 class NotifyingPool {
@@ -55,11 +68,57 @@ TEST(ComputePool, CastsQuantaInOrderAndReportsThem) {
     EXPECT_EQ(done[i].samples.tile, TileId{15 - i});
     EXPECT_EQ(done[i].report.tile, TileId{15 - i});
     EXPECT_EQ(done[i].report.epoch, Epoch{1});
-    EXPECT_EQ(done[i].report.to, kPixelLevel);
-    EXPECT_EQ(done[i].report.rays, 4096u);
-    EXPECT_EQ(done[i].report.samples, 40960u);
+    EXPECT_EQ(done[i].report.to, kFirstAdaptiveStep);
+    EXPECT_EQ(done[i].report.rays, kWhole.rays);
+    EXPECT_EQ(done[i].report.samples, 10 * kWhole.rays);
   }
+  EXPECT_GE(kWhole.rays, 4096u);
   EXPECT_GT(pool.pool.busy().count(), 0);
+}
+
+TEST(ComputePool, GoesOnWithTheTilesOfTheViewAndForgetsThoseOfOlderOnes) {
+  NotifyingPool pool(1);
+  for (std::uint32_t epoch = 1; epoch <= 2; ++epoch) {
+    const auto source = std::make_shared<CountingSource>();
+    pool.pool.begin_view(view(epoch, source));
+    pool.pool.push({{epoch}, {0}, kNoStep, {1}});
+    pool.take(1);
+    EXPECT_EQ(source->batches, 1);
+    pool.pool.push({{epoch}, {0}, {1}, {2}});
+    EXPECT_EQ(pool.take(1).front().samples.count, 56u) << "of 9×9 places 25 were known";
+    EXPECT_EQ(source->batches, 2) << "nothing was cast again";
+  }
+  const auto source = std::make_shared<CountingSource>();
+  pool.pool.begin_view(view(3, source));
+  pool.pool.push({{3}, {0}, {2}, {3}});
+  const auto done = pool.take(1);
+  EXPECT_EQ(source->batches, kWhole.batches) << "cast again from the first step";
+  EXPECT_EQ(done.front().report.rays, kWhole.rays - 81) << "but told of once";
+}
+
+TEST(ComputePool, TellsOnceThatAViewHasBegun) {
+  NotifyingPool pool(3);
+  EXPECT_FALSE(pool.pool.take_begun());
+  for (std::uint32_t epoch = 1; epoch <= 2; ++epoch) {
+    pool.pool.begin_view(view(epoch, std::make_shared<CountingSource>()));
+    EXPECT_FALSE(pool.pool.take_begun()) << "nothing of it has been begun";
+    for (std::uint32_t i = 0; i < 6; ++i) pool.pool.push(tile(epoch, i));
+    pool.take(6);
+    EXPECT_EQ(pool.pool.take_begun(), Epoch{epoch});
+    EXPECT_FALSE(pool.pool.take_begun());
+  }
+}
+
+TEST(ComputePool, TellsThatAViewHasBegunBeforeItsFirstTileIsDone) {
+  NotifyingPool pool(1);
+  const auto held = std::make_shared<HeldSource>();
+  pool.pool.begin_view(view(1, held));
+  pool.pool.push(tile(1, 0));
+  pool.notified.acquire();
+  EXPECT_EQ(pool.pool.take_begun(), Epoch{1});
+  EXPECT_TRUE(pool.pool.take_done().empty());
+  held->allow(kWhole.batches);
+  EXPECT_EQ(pool.take(1).size(), 1u);
 }
 
 TEST(ComputePool, IgnoresQuantaWithoutOrOfAnotherView) {
@@ -85,13 +144,14 @@ TEST(ComputePool, ANewerEpochEmptiesTheQueueAndStopsWhatRunsAtItsNextBatch) {
   const auto done = pool.take(1);
   ASSERT_EQ(done.size(), 1u);
   EXPECT_EQ(done.front().samples.epoch, Epoch{2});
-  EXPECT_EQ(held->batches, 1) << "of " << kBatchesOfATile << " in the first of four tiles";
+  EXPECT_EQ(held->batches, 1) << "of " << kWhole.batches << " in the first of four tiles";
 }
 
 TEST(ComputePool, NeverHandsOutWhatBecameStaleInTheOutbox) {
   NotifyingPool pool(1);
   pool.pool.begin_view(view(1, std::make_shared<CountingSource>()));
   pool.pool.push(tile(1, 0));
+  pool.notified.acquire();  // it is begun
   pool.notified.acquire();  // it is done, and in the outbox
   pool.pool.begin_view(view(2, std::make_shared<CountingSource>()));
   EXPECT_TRUE(pool.pool.take_done().empty());
@@ -102,15 +162,15 @@ TEST(ComputePool, NeverHandsOutWhatBecameStaleInItsLastBatch) {
   const auto held = std::make_shared<HeldSource>();
   pool.pool.begin_view(view(1, held));
   pool.pool.push(tile(1, 0));
-  held->allow(kBatchesOfATile - 1);
-  held->wait_until_entered(kBatchesOfATile);
+  held->allow(kWhole.batches - 1);
+  held->wait_until_entered(kWhole.batches);
   pool.pool.begin_view(view(2, std::make_shared<CountingSource>()));
   held->allow(1);
   pool.pool.push(tile(2, 1));
   const auto done = pool.take(1);
   ASSERT_EQ(done.size(), 1u);
   EXPECT_EQ(done.front().samples.epoch, Epoch{2});
-  EXPECT_EQ(held->batches, kBatchesOfATile);
+  EXPECT_EQ(held->batches, kWhole.batches);
 }
 
 TEST(ComputePool, CastsOnAsManyThreadsAsItWasGiven) {
@@ -120,7 +180,7 @@ TEST(ComputePool, CastsOnAsManyThreadsAsItWasGiven) {
   pool.pool.begin_view(view(1, held));
   for (std::uint32_t i = 0; i < kThreads; ++i) pool.pool.push(tile(1, i));
   held->wait_until_entered(kThreads);  // all at once: each is held in its first batch
-  held->allow(kThreads * kBatchesOfATile);
+  held->allow(kThreads * kWhole.batches);
   EXPECT_EQ(pool.take(kThreads).size(), 4u);
 }
 
@@ -131,7 +191,7 @@ TEST(ComputePool, EndsWithQuantaInItsQueueAndLetsGoOfTheView) {
     pool.pool.begin_view(view(1, held));
     for (std::uint32_t i = 0; i < 16; ++i) pool.pool.push(tile(1, i));
     held->wait_until_entered(2);
-    held->allow(16 * kBatchesOfATile);
+    held->allow(16 * kWhole.batches);
   }
   EXPECT_EQ(held.use_count(), 1);
 }
@@ -140,6 +200,7 @@ TEST(ComputePool, TellsOnceOfAThreadThatFailedAndGoesOn) {
   NotifyingPool pool(1);
   pool.pool.begin_view(view(1, std::make_shared<FailingSource>()));
   pool.pool.push(tile(1, 0));
+  pool.notified.acquire();  // it is begun
   pool.notified.acquire();
   EXPECT_THROW(pool.pool.take_done(), std::runtime_error);
   EXPECT_TRUE(pool.pool.take_done().empty());
@@ -155,7 +216,7 @@ TEST(ComputePool, HoldsWhenViewsChangeWhileManyThreadsCast) {
   for (std::uint32_t epoch = 1; epoch <= kViews; ++epoch) {
     pool.pool.begin_view(view(epoch, std::make_shared<CountingSource>()));
     for (std::uint32_t i = 0; i < kGrid.count(); ++i) {
-      pool.pool.push({{epoch}, {i}, kNoLevel, kCoarsestLevel});
+      pool.pool.push({{epoch}, {i}, kNoStep, {1}});
     }
     for (const auto& done : pool.pool.take_done()) {
       EXPECT_EQ(done.samples.epoch, Epoch{epoch});

@@ -3,7 +3,9 @@
 // Sources of samples whose progress a test can see and hold.
 
 #include <atomic>
+#include <cmath>
 #include <condition_variable>
+#include <cstdint>
 #include <mutex>
 #include <span>
 #include <stdexcept>
@@ -24,6 +26,31 @@ class CountingSource : public SampleSource {
     return {positions.size(), 10 * positions.size()};
   }
   mutable std::atomic<int> batches{0};
+};
+
+/// A disc before a slope, and a grain so fine that it decides nothing, but no two rays bring back
+/// the same.
+class DiscSource final : public CountingSource {
+ public:
+  CastCounts cast(std::span<const PixelPosition> positions, std::span<Sample> samples,
+                  std::span<std::uint32_t> surfaces) const override {
+    const CastCounts counts = CountingSource::cast(positions, samples, surfaces);
+    for (std::size_t i = 0; i < positions.size(); ++i) {
+      const auto [x, y] = positions[i];
+      const bool inside = std::hypot(x - 40, y - 35) < 25;
+      samples[i] = {(inside ? 0.75f : 0.25f) + 1e-4f * grain(x, y), inside ? 0.1f : 1e-3f * x,
+                    1e-3f * y, 1};
+      if (!surfaces.empty()) surfaces[i] = inside ? 1 : 0;
+    }
+    return counts;
+  }
+  bool has_surfaces() const override { return true; }
+
+ private:
+  static float grain(float x, float y) {
+    const float value = std::sin(12.9898f * x + 78.233f * y) * 437.585f;
+    return value - std::floor(value);
+  }
 };
 
 /// Stops in each batch until the test lets it go on.

@@ -43,7 +43,7 @@ StepPlan plan_of(Step step, const Refinement& how) {
   plan.worth = kWorth * kWorth * threshold * threshold;
   plan.probes = probes_by(threshold);
   if (round > 0) plan.probes -= probes_by(threshold_at(round - 1, double(how.first_threshold)));
-  plan.even_samples = round == 0 ? 1 : 1 + (4U << std::min(round - 1, 18));
+  plan.even_samples = even_samples(step);
   return plan;
 }
 

@@ -64,19 +64,21 @@ TEST(CommandLine, DefaultsAreThePromisedOnes) {
   EXPECT_EQ(render.compositors, 1);
   EXPECT_EQ(render.tile_px, 64);
   EXPECT_EQ(render.schedule, Schedule::kSquares);
-  EXPECT_EQ(render.sampling, Sampling::kSubdivision);
+  EXPECT_EQ(render.sampling, Sampling::kAdaptive);
   EXPECT_EQ(render.error, 0.5);
+  EXPECT_EQ(render.filter, Filter::kBilinear);
   EXPECT_EQ(render.host, "127.0.0.1");
   EXPECT_EQ(render.port, 8080);
   EXPECT_EQ(render.log_level, LogLevel::kInfo);
+  EXPECT_EQ(options(kServe).update, Update::kAll);
 }
 
 TEST(CommandLine, EveryOptionOfRenderIsRead) {
   const Options o = options(
       {"render",        "--size",      "800x600",  "--workers",  "3",          "--threads=4",
        "--compositors", "2",           "--tile",   "32",         "--schedule", "rows",
-       "--sampling",    "every-pixel", "--error",  "1.5",        "--samples",  "1",
-       "--time",        "2.5",         "--step",   "0.25",       "--update",   "100",
+       "--sampling",    "every-pixel", "--error",  "1.5",        "--samples",  "16",
+       "--time",        "2.5",         "--step",   "0.25",       "--filter",   "bicubic",
        "--orbit",       "12,90",       "--data",   "replicated", "--report",   "r.json",
        "--log-level",   "debug",       "--output", "f%03d.exr",  "s.json"});
   EXPECT_EQ(o.input, "s.json");
@@ -89,7 +91,8 @@ TEST(CommandLine, EveryOptionOfRenderIsRead) {
   EXPECT_EQ(o.schedule, Schedule::kRows);
   EXPECT_EQ(o.sampling, Sampling::kEveryPixel);
   EXPECT_EQ(o.error, 1.5);
-  EXPECT_EQ(o.samples, 1);
+  EXPECT_EQ(o.samples, 16);
+  EXPECT_EQ(o.filter, Filter::kBicubic);
   EXPECT_EQ(o.time_s, 2.5);
   EXPECT_EQ(o.step_mm, 0.25);
   EXPECT_EQ(o.orbit, (Orbit{12, 90}));
@@ -104,6 +107,29 @@ TEST(CommandLine, ServeReadsWhereToListen) {
   EXPECT_EQ(o.host, "0.0.0.0");
   EXPECT_EQ(o.port, 0);
   EXPECT_EQ(o.token, "a-B_9");
+}
+
+TEST(CommandLine, EveryKindOfSamplingFilterAndUpdateHasItsName) {
+  const std::vector<std::pair<const char*, Sampling>> samplings{
+      {"adaptive", Sampling::kAdaptive},
+      {"subdivision", Sampling::kSubdivision},
+      {"every-pixel", Sampling::kEveryPixel}};
+  for (const auto& [name, sampling] : samplings)
+    EXPECT_EQ(options(kRender + Words{"--sampling", name}).sampling, sampling) << name;
+  const std::vector<std::pair<const char*, Filter>> filters{
+      {"box", Filter::kBox},
+      {"bilinear", Filter::kBilinear},
+      {"biquadratic", Filter::kBiquadratic},
+      {"piecewise-quadratic", Filter::kPiecewiseQuadratic},
+      {"bicubic", Filter::kBicubic}};
+  for (const auto& [name, filter] : filters)
+    EXPECT_EQ(options(kRender + Words{"--filter", name}).filter, filter) << name;
+  const std::vector<std::pair<const char*, Update>> updates{{"100", Update::kAll},
+                                                            {"50", Update::kHalf},
+                                                            {"25", Update::kQuarter},
+                                                            {"frameless", Update::kFrameless}};
+  for (const auto& [name, update] : updates)
+    EXPECT_EQ(options(kServe + Words{"--update", name}).update, update) << name;
 }
 
 TEST(CommandLine, InfoNeedsAFileAlone) {
@@ -209,6 +235,8 @@ TEST(CommandLine, WhatDoesNotApplyIsNamed) {
             "--orbit: does not apply to serve (leave it out)");
   EXPECT_EQ(refusal(kRender + Words{"--port", "4"}),
             "--port: does not apply to render (leave it out)");
+  EXPECT_EQ(refusal(kRender + Words{"--update", "50"}),
+            "--update: does not apply to render (leave it out)");
   EXPECT_EQ(refusal({"info", "a", "--size", "1x1"}),
             "--size: does not apply to info (leave it out)");
   EXPECT_EQ(refusal({"--threads", "4", "render", "s.json"}),
@@ -228,7 +256,11 @@ TEST(CommandLine, BadValuesAreNamed) {
   EXPECT_EQ(of("--threads", "0"),
             "--threads: \"0\" is not a whole number from 1 to 1024 (give one from 1 to 1024)");
   EXPECT_EQ(of("--error", "nan"),
-            "--error: \"nan\" is not a number from 0 to 255 (give one from 0 to 255)");
+            "--error: \"nan\" is not a number from 0.01 to 255 (give one from 0.01 to 255)");
+  for (const char* error : {"0", "0.0099", "-1", "255.1", "inf"})
+    EXPECT_THAT(of("--error", error), HasSubstr("is not a number from 0.01 to 255")) << error;
+  EXPECT_EQ(options(kRender + Words{"--error", "0.01"}).error, 0.01);
+  EXPECT_THAT(of("--samples", "0"), HasSubstr("is not a whole number from 1 to 1048576"));
   EXPECT_THAT(of("--step", "-1"), HasSubstr("--step: \"-1\" is not a number"));
   EXPECT_THAT(of("--time", "0"), HasSubstr("--time: \"0\" is not a number"));
   for (const char* size :
@@ -240,6 +272,11 @@ TEST(CommandLine, BadValuesAreNamed) {
   }
   EXPECT_EQ(of("--schedule", "row"),
             "--schedule: \"row\" is none of squares, rows (did you mean \"rows\"?)");
+  EXPECT_EQ(of("--filter", "bicubik"),
+            "--filter: \"bicubik\" is none of box, bilinear, biquadratic, piecewise-quadratic, "
+            "bicubic (did you mean \"bicubic\"?)");
+  EXPECT_EQ(refusal(kServe + Words{"--update", "5"}),
+            "--update: \"5\" is none of 100, 50, 25, frameless (did you mean \"50\"?)");
   EXPECT_THAT(refusal(kServe + Words{"--port", "65536"}), HasSubstr("--port: \"65536\""));
 }
 
@@ -264,14 +301,6 @@ TEST(CommandLine, WhatIsStillToComeIsRefusedByName) {
   const auto of = [](const std::string& option, const std::string& value) {
     return refusal(kRender + Words{option, value});
   };
-  EXPECT_EQ(of("--sampling", "adaptive"),
-            "--sampling: adaptive sampling is not in this version (use subdivision)");
-  EXPECT_EQ(of("--samples", "2"),
-            "--samples: more than one sample per pixel is not in this version (use --samples 1)");
-  EXPECT_EQ(of("--update", "50"),
-            "--update: partial updating is not in this version (use --update 100)");
-  EXPECT_EQ(of("--update", "25"),
-            "--update: partial updating is not in this version (use --update 100)");
   EXPECT_EQ(of("--bypass", "worker"),
             "--bypass: by-passing roles is not in this version (leave --bypass out)");
   EXPECT_EQ(of("--data", "slabs:4"),

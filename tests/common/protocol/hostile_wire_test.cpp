@@ -73,7 +73,7 @@ TEST(HostileMessage, OfAnUnknownKindIsRefused) {
 
 TEST(HostileMessage, WithPaddingThatIsNotZeroIsRefused) {
   Buffer bytes = encode(ToCompositor(filled<Samples>()));
-  const std::size_t padding = 1 + 4 + 4 + 1 + 1;  // kind, epoch, tile, from, to
+  const std::size_t padding = 1 + 4 + 4 + 2 + 2 + 4;  // kind, epoch, tile, from, to, count
   ASSERT_EQ(bytes.data()[padding], std::byte{0});
   bytes.data()[padding] = std::byte{1};
   EXPECT_FALSE(decode<ToCompositor>(std::move(bytes)));
@@ -101,6 +101,9 @@ TEST(HostileMessage, WithAnUnknownEnumeratorIsRefused) {
   expect_only_enumerators_read<VoxelType>();
   expect_only_enumerators_read<ColorSpace>();
   expect_only_enumerators_read<ExitStatus>();
+  expect_only_enumerators_read<Sampling>();
+  expect_only_enumerators_read<Filter>();
+  expect_only_enumerators_read<Update>();
 }
 
 TEST(HostileMessage, CannotReportAFailureAsDone) {
@@ -187,7 +190,8 @@ TEST(HostileMessage, OfRandomBytesIsRefusedOrMeansWhatItsBytesSay) {
   for (int i = 0; i < 20000; ++i) {
     Buffer bytes(std::uniform_int_distribution<std::size_t>(0, 100)(random));
     for (std::byte& byte : bytes.bytes()) byte = static_cast<std::byte>(random());
-    if (bytes.size() > 0) bytes.data()[0] = static_cast<std::byte>(random() % 16);
+    constexpr std::size_t kKinds = std::variant_size_v<ToMaster>;
+    if (bytes.size() > 0) bytes.data()[0] = static_cast<std::byte>(random() % (kKinds + 1));
     const Buffer before = copy_of(bytes.bytes());
     if (auto decoded = decode<ToMaster>(std::move(bytes))) {
       ASSERT_TRUE(same(encode(std::move(*decoded)), before));

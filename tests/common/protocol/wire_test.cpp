@@ -49,6 +49,10 @@ TEST(Message, ListsEachOfItsMembersAsAField) {
   expect_all_members_listed<Camera>();
   expect_all_members_listed<TileGrid>();
   expect_all_members_listed<SharedBlock>();
+  expect_all_members_listed<Step>();
+  expect_all_members_listed<Refinement>();
+  expect_all_members_listed<DisplaySettings>();
+  expect_all_members_listed<TileQuality>();
   expect_all_members_listed<MessageCount>();
   expect_all_members_listed<Failure>();
   expect_all_members_listed<PixelRect>();
@@ -68,9 +72,9 @@ TEST(Message, HasANameOfItsOwnInItsDirection) {
 }
 
 TEST(Message, IsLittleEndianWithoutPadding) {
-  const Buffer bytes = encode(
-      ToWorker(RenderTile{.epoch = {0x04030201}, .tile = {0x08070605}, .from = {5}, .to = {-2}}));
-  const std::array<int, 11> expected{5, 1, 2, 3, 4, 5, 6, 7, 8, 5, 0xfe};
+  const Buffer bytes = encode(ToWorker(
+      RenderTile{.epoch = {0x04030201}, .tile = {0x08070605}, .from = {5}, .to = {0x0a09}}));
+  const std::array<int, 13> expected{5, 1, 2, 3, 4, 5, 6, 7, 8, 5, 0, 9, 0x0a};
   ASSERT_EQ(bytes.size(), expected.size());
   for (std::size_t i = 0; i < expected.size(); ++i) {
     EXPECT_EQ(std::to_integer<int>(bytes.data()[i]), expected[i]) << i;
@@ -80,10 +84,10 @@ TEST(Message, IsLittleEndianWithoutPadding) {
 TEST(Message, CarriesNanInfinityAndMinusZeroAsTheirBits) {
   for (const double value : {std::nan("0x123"), -std::numeric_limits<double>::infinity(), -0.0,
                              std::numeric_limits<double>::denorm_min()}) {
-    const BandReady sent{{7}, {3}, value};
+    const TileDone sent{{7}, {3}, {2}, 100, 20, 10, {value, -value}};
     const auto decoded = decode<ToMaster>(encode(ToMaster(sent)));
     ASSERT_TRUE(decoded);
-    EXPECT_TRUE(same(std::get<BandReady>(*decoded), sent)) << value;
+    EXPECT_TRUE(same(std::get<TileDone>(*decoded), sent)) << value;
   }
 }
 
@@ -143,9 +147,10 @@ TEST(BulkMessage, IsAlignedTo16AlsoInMemoryMadeForReceiving) {
 }
 
 TEST(BulkMessage, WithoutPayloadSurvives) {
-  const auto decoded = decode<ToCompositor>(encode(ToCompositor(Samples{{1}, {2}, {5}, {4}, {}})));
+  const auto decoded =
+      decode<ToCompositor>(encode(ToCompositor(Samples{{1}, {2}, {4}, {5}, 0, {}})));
   ASSERT_TRUE(decoded);
-  EXPECT_EQ(std::get<Samples>(*decoded).colors.size(), 0u);
+  EXPECT_EQ(std::get<Samples>(*decoded).packed.size(), 0u);
 }
 
 }  // namespace

@@ -4,7 +4,6 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <map>
 #include <set>
 
 namespace goldthread {
@@ -24,88 +23,74 @@ std::set<Place> places_of(const std::vector<SampleOffset>& offsets) {
   return places;
 }
 
-/// Through every second, or every, level from `coarse` down to a pixel.
-std::vector<Level> path(Level coarse, int stride) {
-  std::vector<Level> levels;
-  for (int log2 = coarse.log2_spacing; log2 > 0; log2 -= stride) {
-    levels.push_back({static_cast<std::int8_t>(log2)});
-  }
-  levels.push_back(kPixelLevel);
-  return levels;
-}
+int reach(int extent, int spacing) { return (extent + spacing - 1) / spacing * spacing; }
 
-TEST(NewSamples, RefinedByAnyStepsHoldEachPixelExactlyOnce) {
+TEST(GridPlaces, OfEachPixelAreThePixels) {
   for (const ImageSize size : kTileSizes) {
-    for (std::int8_t coarse = 0; coarse <= kCoarsestLevel.log2_spacing; ++coarse) {
-      for (int stride = 1; stride <= 4; ++stride) {
-        std::map<Place, int> times;
-        Level from = kNoLevel;
-        for (const Level to : path({coarse}, stride)) {
-          for (const SampleOffset offset : new_samples(size, from, to)) {
-            ++times[{offset.x, offset.y}];
-          }
-          from = to;
-        }
-        for (int y = 0; y < size.height; ++y) {
-          for (int x = 0; x < size.width; ++x) EXPECT_EQ((times[{x, y}]), 1) << x << " " << y;
-        }
-        for (const auto& [place, count] : times) EXPECT_EQ(count, 1) << "also beyond the edge";
-      }
-    }
-  }
-}
-
-TEST(NewSamples, OfTheStepsToALevelCoverWhatTheDirectWayDoes) {
-  for (const ImageSize size : kTileSizes) {
-    std::set<Place> stepped;
-    Level from = kNoLevel;
-    for (const Level to : path(kCoarsestLevel, 1)) {
-      stepped.merge(places_of(new_samples(size, from, to)));
-      const auto direct = places_of(new_samples(size, kNoLevel, to));
-      EXPECT_TRUE(std::includes(stepped.begin(), stepped.end(), direct.begin(), direct.end()));
-      // What there is beyond it are replicated samples of coarser levels, outside the tile.
-      for (const Place& place : stepped) {
-        EXPECT_TRUE(direct.contains(place) || place.first >= size.width ||
-                    place.second >= size.height);
-      }
-      from = to;
-    }
-  }
-}
-
-TEST(NewSamples, FromNothingToThePixelLevelAreThePixels) {
-  for (const ImageSize size : kTileSizes) {
-    const auto places = places_of(new_samples(size, kNoLevel, kPixelLevel));
+    const auto places = places_of(grid_places(size, 1));
     EXPECT_EQ(places.size(), std::size_t(size.width) * std::size_t(size.height));
     EXPECT_EQ(*places.rbegin(), Place(size.width - 1, size.height - 1));
   }
 }
 
-TEST(NewSamples, AboveThePixelLevelIncludeTheReplicatedColumnAndRow) {
-  EXPECT_EQ(new_samples({64, 64}, kNoLevel, {4}).size(), 25u);  // 0, 16, 32, 48 and 64
-  EXPECT_EQ(new_samples({64, 64}, kNoLevel, {1}).size(), 33u * 33u);
+TEST(GridPlaces, AboveThePixelIncludeTheReplicatedColumnAndRow) {
+  EXPECT_EQ(grid_places({64, 64}, 16).size(), 25u);  // 0, 16, 32, 48 and 64
+  EXPECT_EQ(grid_places({64, 64}, 2).size(), 33u * 33u);
   for (const ImageSize size : kTileSizes) {
-    for (std::int8_t log2 = 1; log2 <= kCoarsestLevel.log2_spacing; ++log2) {
-      const int spacing = 1 << log2;
-      const auto places = places_of(new_samples(size, kNoLevel, {log2}));
-      const auto reach = [&](int extent) { return (extent + spacing - 1) / spacing * spacing; };
-      EXPECT_EQ(*places.rbegin(), Place(reach(size.width), reach(size.height)));
-      EXPECT_EQ(places.size(), std::size_t(reach(size.width) / spacing + 1) *
-                                   std::size_t(reach(size.height) / spacing + 1));
+    for (int spacing = 2; spacing <= kCoarsestSpacing; spacing *= 2) {
+      const auto places = places_of(grid_places(size, spacing));
+      const int right = reach(size.width, spacing), below = reach(size.height, spacing);
+      EXPECT_EQ(*places.rbegin(), Place(right, below));
+      EXPECT_EQ(places.size(), std::size_t(right / spacing + 1) * std::size_t(below / spacing + 1));
       for (const auto& [x, y] : places) EXPECT_EQ((x | y) % spacing, 0);
     }
   }
 }
 
-TEST(NewSamples, ComeInBlocksOfFourByFour) {
-  const auto offsets = new_samples({64, 64}, kNoLevel, kPixelLevel);
-  for (std::size_t i = 0; i < offsets.size(); ++i) {
-    EXPECT_EQ(offsets[i].x / 4, offsets[i - i % 16].x / 4);
-    EXPECT_EQ(offsets[i].y / 4, offsets[i - i % 16].y / 4);
+TEST(GridPlaces, OfAFinerGridHoldThoseOfACoarserOneButForReplicatedOnes) {
+  for (const ImageSize size : kTileSizes) {
+    for (int spacing = kCoarsestSpacing; spacing > 1; spacing /= 2) {
+      const auto fine = places_of(grid_places(size, spacing / 2));
+      for (const auto& [x, y] : places_of(grid_places(size, spacing))) {
+        EXPECT_TRUE(fine.contains({x, y}) || x >= size.width || y >= size.height);
+      }
+    }
   }
 }
 
-TEST(NewSamples, StandForTheCentresOfTheirPixels) {
+TEST(GridPlaces, ComeInBlocksOfFourByFour) {
+  for (int spacing = 1; spacing <= 4; spacing *= 2) {
+    // With the replicated ones whole blocks.
+    const int whole = spacing > 1 ? 64 - spacing : 64;
+    const auto offsets = grid_places({whole, whole}, spacing);
+    const int edge = 4 * spacing;
+    ASSERT_EQ(offsets.size() % 16, 0u);
+    for (std::size_t i = 0; i < offsets.size(); ++i) {
+      EXPECT_EQ(offsets[i].x / edge, offsets[i - i % 16].x / edge) << spacing;
+      EXPECT_EQ(offsets[i].y / edge, offsets[i - i % 16].y / edge) << spacing;
+    }
+  }
+}
+
+TEST(PlacesAlong, AreAsManyAsTheCoarsestGridReachesAndHoldEveryPlace) {
+  EXPECT_EQ(places_along(1), 17);
+  EXPECT_EQ(places_along(16), 17);
+  EXPECT_EQ(places_along(17), 33);
+  EXPECT_EQ(places_along(64), 65);
+  for (const ImageSize size : kTileSizes) {
+    for (int spacing = 1; spacing <= kCoarsestSpacing; spacing *= 2) {
+      for (const SampleOffset offset : grid_places(size, spacing)) {
+        EXPECT_LT(offset.x, places_along(size.width));
+        EXPECT_LT(offset.y, places_along(size.height));
+      }
+    }
+    const SampleOffset last = grid_places(size, kCoarsestSpacing).back();
+    EXPECT_EQ(last.x + 1, places_along(size.width)) << "none is there in vain";
+    EXPECT_EQ(last.y + 1, places_along(size.height));
+  }
+}
+
+TEST(SampleOffset, StandsForTheCentreOfItsPixel) {
   const PixelPosition position = position_of({128, 64, 64, 64}, {3, 5});
   EXPECT_EQ(position.x, 131.5f);
   EXPECT_EQ(position.y, 69.5f);
