@@ -6,6 +6,7 @@ namespace goldthread {
 std::vector<Camera> rocking_cameras(const Camera& rest, int frames, double swing_deg) {
   const int middle = frames / 2;
   std::vector<Camera> cameras;
+  cameras.reserve(static_cast<std::size_t>(frames));
   for (int i = 0; i < frames; ++i) {
     // The middle is turned by 0, which orbit() leaves as it is to the bit.
     cameras.push_back(middle == 0 ? rest : orbit(rest, swing_deg * (i - middle) / middle));

@@ -17,7 +17,7 @@ namespace goldthread {
 struct PictureErrors {
   int edits_behind = 0;    ///< changes of scene or size that it does not show yet
   double spatial_px = 0;   ///< how coarse it is: spatial_error_px()
-  double temporal_px = 0;  ///< how late its camera is: temporal_error_px()
+  double temporal_px = 0;  ///< how late: kShiftOfMovement × temporal_error_px() of its camera
   double total_px() const { return spatial_px + temporal_px; }
 };
 

@@ -15,9 +15,8 @@ constexpr int kMeasuredFrames = 9;
 
 /// The time that a full frame takes on the whole machine.
 double frame_seconds(const MotionScene& scene) {
-  std::vector<double> seconds;
-  for (int i = 0; i < kMeasuredFrames; ++i)
-    seconds.push_back(scene.shared(full_frame(scene, scene.rest).seconds));
+  std::vector<double> seconds(kMeasuredFrames);
+  for (double& each : seconds) each = scene.shared(full_frame(scene, scene.rest).seconds);
   return median(std::move(seconds));
 }
 

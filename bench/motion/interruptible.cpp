@@ -62,7 +62,7 @@ class Interruptible : public MotionMethod {
   }
 
   double lateness(const Camera& camera) const {
-    return temporal_error_px(scene_.points, camera, newest_, scene_.image.size);
+    return kShiftOfMovement * temporal_error_px(scene_.points, camera, newest_, scene_.image.size);
   }
 
   FrameState state_at(double now) const {

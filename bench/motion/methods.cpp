@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "bench/motion/methods.h"
 
+#include <algorithm>
 #include <map>
 
 #include "bench/motion/refined_view.h"
@@ -87,8 +88,9 @@ class PartialUpdating : public MotionMethod {
   double cast_part(const Camera& newest) {
     const std::uint32_t part = frame_++ % parts_of(update_);
     const std::vector<UpdatePlace> places = places_of(scene_.rect(), update_, part);
-    std::vector<PixelPosition> positions;
-    for (const UpdatePlace& place : places) positions.push_back(place.position);
+    std::vector<PixelPosition> positions(places.size());
+    std::transform(places.begin(), places.end(), positions.begin(),
+                   [](const UpdatePlace& place) { return place.position; });
     std::vector<Sample> samples(positions.size());
     CountedRays rays(scene_, newest);
     rays.cast(positions, samples);

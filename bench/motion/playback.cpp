@@ -100,8 +100,9 @@ std::vector<Showing> play(const CameraPath& path,
       players[i].look(seconds, picture);
     });
   }
-  std::vector<Showing> result;
-  for (const Player& player : players) result.push_back(player.showing());
+  std::vector<Showing> result(players.size());
+  std::transform(players.begin(), players.end(), result.begin(),
+                 [](const Player& player) { return player.showing(); });
   return result;
 }
 

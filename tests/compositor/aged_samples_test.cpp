@@ -48,11 +48,10 @@ TEST(AgedSamples, APartialUpdateAtRestIsThePicture) {
     for (std::uint32_t part = 0; part < parts_of(update); ++part)
       cast(samples, update, 1, part, waves);
     const auto picture = samples.picture(at_rest);
-    for (int i = 0; i < kRect.width * kRect.height; ++i) {
-      const PixelPosition centre{float(kRect.x + i % kRect.width) + 0.5f,
-                                 float(kRect.y + i / kRect.width) + 0.5f};
-      EXPECT_EQ(picture[std::size_t(i)].red, waves(centre));
-    }
+    std::size_t i = 0;
+    for (int y = kRect.y; y < kRect.y + kRect.height; ++y)
+      for (int x = kRect.x; x < kRect.x + kRect.width; ++x, ++i)
+        EXPECT_EQ(picture[i].red, waves({float(x) + 0.5f, float(y) + 0.5f}));
   }
 }
 

@@ -141,8 +141,10 @@ Path constant_speed(double px_per_s) {
 }
 /// Half a second of movement, half a second of rest.
 Path stop_and_go(double px_per_s) {
-  return
-      [px_per_s](int ms) { return px_per_s * (ms / 1000 * 500 + std::min(ms % 1000, 500)) / 1000; };
+  return [px_per_s](int ms) {
+    const int moving_ms = ms / 1000 * 500 + std::min(ms % 1000, 500);
+    return px_per_s * moving_ms / 1000;
+  };
 }
 /// To and fro about a place, as a head does.
 Path jitter(double amplitude_px) {
