@@ -15,10 +15,10 @@ struct CastView {
   Epoch epoch;
   TileGrid grid;
   Refinement refinement;
-  Update update = Update::kAll;
-  std::uint32_t part = 0;  ///< of the samples: what an update casts
   Appearance appearance;
   std::shared_ptr<const SampleSource> source;
+  Update update = Update::kAll;
+  std::uint32_t part = 0;  ///< of the samples: what an update casts
 };
 
 }  // namespace goldthread

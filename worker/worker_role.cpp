@@ -125,10 +125,10 @@ void WorkerRole::on(const BeginView& message) {
       CastView{message.epoch,
                message.grid,
                message.refinement,
-               message.update,
-               message.frame % parts_of(message.update),
                appearance_of(message.background, message.color_space),
-               make_source_(scene_, message.camera, message.grid.image)}));
+               make_source_(scene_, message.camera, message.grid.image),
+               message.update,
+               message.frame % parts_of(message.update)}));
 }
 
 void WorkerRole::on(const RenderTile& message) {

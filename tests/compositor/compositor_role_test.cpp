@@ -351,7 +351,7 @@ TEST_F(PresentTest, OfASizeThatLeavesTheBandNoRowSendsNothing) {
 
 TEST_F(PresentTest, PassesOnWhatTheMasterSaysOfThePicture) {
   send_slope();
-  const Present sent{{1}, 12, 34, 56, Filter::kBicubic, {64, 192}, false, true, 3, 7, 1.25f};
+  const Present sent{{1}, 12, 34, 56, Filter::kBicubic, {64, 192}, false, true, 3, 7, 1.25f, {}};
   master_.to_compositor(role_, sent);
   const auto bands = sent_bands();
   ASSERT_EQ(bands.size(), 1u);
