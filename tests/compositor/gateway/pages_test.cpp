@@ -45,7 +45,9 @@ TEST(Pages, TypesFollowTheExtension) {
 class EmbedScript : public testing::Test {
  protected:
   void SetUp() override {
-    root_ = fs::path(testing::TempDir()) / "goldthread_embed_test";
+    // One for each test: they run side by side.
+    const auto* test = testing::UnitTest::GetInstance()->current_test_info();
+    root_ = fs::path(testing::TempDir()) / (std::string("goldthread_embed_") + test->name());
     fs::remove_all(root_);
     fs::create_directories(root_ / "dist" / "assets");
   }
