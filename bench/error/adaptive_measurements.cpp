@@ -18,12 +18,20 @@ constexpr double kVtkStep = 0.5;  // voxels
 /// The truth is computed on every n-th pixel. Odd: all places of the refinement's grids are met
 /// equally often.
 constexpr int kStride = 3;
-constexpr int kQuickStride = 9;
+constexpr int kLargeStride = 5;
+constexpr int kQuickStride = 17;
+/// Beyond so many pixels a picture is large.
+constexpr int kManyPixels = 1 << 19;
 constexpr Step kFirstPicture{2};
 
 std::vector<double> targets(bool quick) {
   if (quick) return {kStepsTarget, 0.5};
   return {10, 5, kStepsTarget, 1, 0.5, 0.25};
+}
+
+int stride_for(ImageSize size, bool quick) {
+  if (quick) return kQuickStride;
+  return size.width * size.height < kManyPixels ? kStride : kLargeStride;
 }
 
 Features features_in(const Scene& scene) {
@@ -46,7 +54,7 @@ AdaptiveMeasurements::AdaptiveMeasurements(const Subject& subject, ImageSize siz
       peers_(peers),
       caster_(size, settings.threads, kTile),
       frames_(size, settings.threads),
-      stride_(settings.quick ? kQuickStride : kStride) {}
+      stride_(stride_for(size, settings.quick)) {}
 
 double AdaptiveMeasurements::step_for(Look look, double target) const {
   const VolumeGeometry& geometry = subject_.volume->info().geometry;

@@ -33,6 +33,14 @@ double median(std::vector<double> values) {
   return values.size() % 2 == 1 ? values[half] : 0.5 * (values[half - 1] + values[half]);
 }
 
+double percentile(std::vector<double> values, double share) {
+  if (values.empty()) return std::numeric_limits<double>::quiet_NaN();
+  const auto rank = static_cast<std::size_t>(std::ceil(share * double(values.size())));
+  const auto at = values.begin() + std::ptrdiff_t(std::max(rank, std::size_t{1}) - 1);
+  std::nth_element(values.begin(), at, values.end());
+  return *at;
+}
+
 Seconds summarize(std::span<const double> seconds) {
   if (seconds.empty()) return {};
   return {*std::min_element(seconds.begin(), seconds.end()),
@@ -41,20 +49,16 @@ Seconds summarize(std::span<const double> seconds) {
 
 PictureError picture_error(std::span<const Color> shown, std::span<const Color> reference) {
   constexpr double kOff = 32;
-  constexpr double kShare = 0.999;
   const std::size_t count = std::min(shown.size(), reference.size());
   if (count == 0) return {};
   double square_sum = 0;
   std::vector<double> differences(count);
   for (std::size_t i = 0; i < count; ++i)
     differences[i] = largest_difference(shown[i], reference[i], square_sum);
-  std::sort(differences.begin(), differences.end());
-  const auto rank = static_cast<std::size_t>(std::ceil(kShare * double(count)));
-  const auto off =
-      differences.end() - std::upper_bound(differences.begin(), differences.end(), kOff);
-  return {std::sqrt(square_sum / (3 * double(count))),
-          differences[std::max(rank, std::size_t{1}) - 1], differences.back(),
-          double(off) / double(count)};
+  const auto off = std::count_if(differences.begin(), differences.end(),
+                                 [](double difference) { return difference > kOff; });
+  return {std::sqrt(square_sum / (3 * double(count))), percentile(differences, 0.999),
+          *std::max_element(differences.begin(), differences.end()), double(off) / double(count)};
 }
 
 Color displayed(const glm::dvec3& premultiplied, double alpha, const glm::dvec3& background,

@@ -17,6 +17,8 @@ using Color = glm::dvec3;
 
 /// The middle one, or the mean of the two middle ones; NaN of nothing.
 double median(std::vector<double> values);
+/// The least one that a share of them does not exceed (nearest rank); NaN of nothing.
+double percentile(std::vector<double> values, double share);
 
 /// Wall-clock times of repeated frames.
 struct Seconds {

@@ -8,6 +8,7 @@
 #include <memory>
 
 #include "bench/error/bench_error.h"
+#include "bench/interrupts/interrupts.h"
 #include "bench/motion/bench_motion.h"
 #include "common/base/cores.h"
 #include "common/image/whole_file.h"
@@ -17,6 +18,9 @@
 
 namespace goldthread {
 namespace {
+
+constexpr int kInterrupts = 500;
+constexpr int kQuickInterrupts = 50;
 
 /// The folder, made where it is missing; whether it takes a report is found before the work.
 std::filesystem::path report_folder(const std::string& name) {
@@ -85,6 +89,8 @@ int run_error(const Options& options) {
 
   const bench::Subject subject = subject_of(options);
   bench::Report report = bench::run_error_bench(subject, settings);
+  report.interrupts =
+      bench::measure_interrupts(subject, settings.quick ? kQuickInterrupts : kInterrupts, settings);
   phases.end();
   bench::write_report(report, settings.folder);
   std::fputs(bench::report_text(report).c_str(), stdout);
