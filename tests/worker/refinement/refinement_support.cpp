@@ -1,0 +1,158 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "refinement_support.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "common/tile/fill_holes.h"
+
+namespace goldthread::test {
+namespace {
+
+constexpr int kFewEdge = 4;
+constexpr int kManyEdge = 32;
+/// Of a channel, within a pixel: more than that is sampled further.
+constexpr float kFlat = 1.0F / 255;
+
+/// The samples of a regular grid of edge × edge in a pixel.
+std::vector<Sample> samples_of(int x, int y, int edge, const TileRefinement::Cast& cast) {
+  std::vector<PixelPosition> positions;
+  for (int j = 0; j < edge; ++j)
+    for (int i = 0; i < edge; ++i)
+      positions.push_back({float(x + (i + 0.5) / edge), float(y + (j + 0.5) / edge)});
+  std::vector<Sample> samples(positions.size());
+  std::vector<std::uint32_t> surfaces(positions.size());
+  cast(positions, samples, surfaces);
+  return samples;
+}
+
+bool is_flat(std::span<const Sample> samples) {
+  return std::all_of(samples.begin(), samples.end(), [&](const Sample& sample) {
+    return std::abs(sample.red - samples[0].red) < kFlat &&
+           std::abs(sample.green - samples[0].green) < kFlat &&
+           std::abs(sample.blue - samples[0].blue) < kFlat;
+  });
+}
+
+Sample mean_of(std::span<const Sample> samples) {
+  double red = 0, green = 0, blue = 0, alpha = 0;
+  for (const Sample& sample : samples) {
+    red += double(sample.red);
+    green += double(sample.green);
+    blue += double(sample.blue);
+    alpha += double(sample.alpha);
+  }
+  const double share = 1.0 / double(samples.size());
+  return {float(red * share), float(green * share), float(blue * share), float(alpha * share)};
+}
+
+}  // namespace
+
+std::string name_of(Sampling sampling) {
+  switch (sampling) {
+    case Sampling::kAdaptive:
+      return "Adaptive";
+    case Sampling::kSubdivision:
+      return "Subdivision";
+    case Sampling::kEveryPixel:
+      return "EveryPixel";
+  }
+  return {};
+}
+
+Sample grey(double value) {
+  const auto level = static_cast<float>(value);
+  return {level, level, level, 1};
+}
+
+TileRefinement::Cast cast_of(const PictureFunction& picture) {
+  return [picture](std::span<const PixelPosition> positions, std::span<Sample> samples,
+                   std::span<std::uint32_t>) {
+    std::transform(positions.begin(), positions.end(), samples.begin(), picture);
+    return true;
+  };
+}
+
+double Dice::roll() {
+  // splitmix64
+  state_ += 0x9E3779B97F4A7C15U;
+  std::uint64_t bits = state_;
+  bits = (bits ^ (bits >> 30)) * 0xBF58476D1CE4E5B9U;
+  bits = (bits ^ (bits >> 27)) * 0x94D049BB133111EBU;
+  return double((bits ^ (bits >> 31)) >> 11) * 0x1p-53;
+}
+
+std::vector<Sample> pixels_of(const TileRefinement& tile) {
+  const TileLattice& lattice = tile.lattice();
+  std::vector<Sample> places;
+  std::vector<std::uint8_t> known;
+  for (int y = 0; y < lattice.rows(); ++y)
+    for (int x = 0; x < lattice.columns(); ++x) {
+      places.push_back(lattice.sample(x, y));
+      known.push_back(lattice.known(x, y) ? 1 : 0);
+    }
+  fill_holes({lattice.columns(), lattice.rows(), places, known}, Filter::kBilinear);
+  std::vector<Sample> pixels;
+  for (int y = 0; y < lattice.tile().height; ++y)
+    for (int x = 0; x < lattice.tile().width; ++x) pixels.push_back(places[lattice.index(x, y)]);
+  return pixels;
+}
+
+RefinedPicture::RefinedPicture(const TileGrid& grid, TileRefinement::Cast cast,
+                               const Refinement& how, bool with_surfaces)
+    : grid_(grid), cast_(std::move(cast)) {
+  for (std::uint32_t i = 0; i < grid.count(); ++i)
+    tiles_.emplace_back(TileTask{grid.rect({i}), how, {}, with_surfaces});
+}
+
+void RefinedPicture::advance() {
+  for (TileRefinement& tile : tiles_) tile.advance(cast_);
+}
+
+void RefinedPicture::advance_to(Step step) {
+  while (this->step() < step) advance();
+}
+
+double RefinedPicture::estimated_squared_error() const {
+  double sum = 0;
+  for (const TileRefinement& tile : tiles_) sum += tile.quality().squared_error;
+  return sum;
+}
+
+std::vector<Sample> RefinedPicture::pixels() const {
+  std::vector<Sample> all(std::size_t(grid_.image.width) * std::size_t(grid_.image.height));
+  for (std::uint32_t i = 0; i < grid_.count(); ++i) {
+    const PixelRect rect = grid_.rect({i});
+    const auto pixels = pixels_of(tiles_[i]);
+    for (int y = 0; y < rect.height; ++y)
+      std::copy_n(pixels.begin() + std::ptrdiff_t(y) * rect.width, rect.width,
+                  all.begin() + std::ptrdiff_t(rect.y + y) * grid_.image.width + rect.x);
+  }
+  return all;
+}
+
+std::vector<Sample> true_pixels(ImageSize size, const TileRefinement::Cast& cast) {
+  std::vector<Sample> pixels;
+  for (int y = 0; y < size.height; ++y)
+    for (int x = 0; x < size.width; ++x) {
+      auto samples = samples_of(x, y, kFewEdge, cast);
+      if (!is_flat(samples)) samples = samples_of(x, y, kManyEdge, cast);
+      pixels.push_back(mean_of(samples));
+    }
+  return pixels;
+}
+
+double squared_difference(const Sample& a, const Sample& b) {
+  const double red = double(a.red) - double(b.red);
+  const double green = double(a.green) - double(b.green);
+  const double blue = double(a.blue) - double(b.blue);
+  return (red * red + green * green + blue * blue) / 3;
+}
+
+double rms_difference(std::span<const Sample> a, std::span<const Sample> b) {
+  double sum = 0;
+  for (std::size_t i = 0; i < a.size(); ++i) sum += squared_difference(a[i], b[i]);
+  return 255 * std::sqrt(sum / double(a.size()));
+}
+
+}  // namespace goldthread::test

@@ -1,0 +1,123 @@
+// SPDX-License-Identifier: Apache-2.0
+// Tiles leave no mark in the picture: at their borders it is as good as anywhere else, and other
+// tiles do not make another picture.
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstdio>
+
+#include "refinement_support.h"
+
+namespace goldthread::test {
+namespace {
+
+constexpr int kEdge = 256;
+constexpr ImageSize kImage{kEdge, kEdge};
+constexpr int kPictures = 48;
+/// Of Student's distribution with 47 degrees of freedom, for a confidence of 99%, two-sided.
+constexpr double kStudent = 2.685;
+
+/// Waves with a circle and a straight edge in them, nowhere in particular.
+PictureFunction random_picture(Dice& dice) {
+  const double fx = dice.between(0.02, 0.15), fy = dice.between(0.02, 0.15);
+  const double phase = dice.between(0, 6), angle = dice.between(0, 2 * M_PI);
+  const double cx = dice.between(0, kEdge), cy = dice.between(0, kEdge),
+               radius = dice.between(20, 90);
+  const double nx = std::cos(angle), ny = std::sin(angle);
+  const double off = nx * dice.between(0, kEdge) + ny * dice.between(0, kEdge);
+  return [=](PixelPosition p) {
+    const double x = double(p.x), y = double(p.y);
+    double value = 0.4 + 0.2 * std::sin(fx * x + phase) * std::cos(fy * y);
+    if (std::hypot(x - cx, y - cy) < radius) value += 0.25;
+    if (nx * x + ny * y > off) value -= 0.15;
+    return grey(value);
+  };
+}
+
+/// Several numbers, one for each picture.
+struct Paired {
+  double mean = 0;
+  double half_width = 0;  ///< of the confidence interval
+
+  explicit Paired(const std::vector<double>& values) {
+    const auto count = double(values.size());
+    for (const double value : values) mean += value / count;
+    double squares = 0;
+    for (const double value : values) squares += (value - mean) * (value - mean);
+    half_width = kStudent * std::sqrt(squares / (count - 1) / count);
+  }
+};
+
+/// Mean squared error of the rows and columns for which is_counted(their number).
+template <class IsCounted>
+double squared_error_of_lines(const std::vector<Sample>& pixels, const std::vector<Sample>& truth,
+                              const IsCounted& is_counted) {
+  double sum = 0;
+  int count = 0;
+  for (int y = 0; y < kEdge; ++y)
+    for (int x = 0; x < kEdge; ++x)
+      for (const int line : {x, y}) {
+        if (!is_counted(line)) continue;
+        const auto i = std::size_t(y * kEdge + x);
+        sum += squared_difference(pixels[i], truth[i]);
+        ++count;
+      }
+  return sum / count;
+}
+
+bool at_border(int line) {
+  return line >= 63 && line < kEdge - 1 && (line % 64 == 0 || line % 64 == 63);
+}
+/// Lines inside of tiles that lie in the grid of coarse samples as those at borders do.
+bool alike_inside(int line) {
+  return (line % 16 == 0 || line % 16 == 15) && line % 64 != 0 && line % 64 != 63;
+}
+
+TEST(Seams, TheErrorAtTilesBordersIsThatOfOtherLines) {
+  const TileGrid grid = TileGrid::squares(kImage, 64);
+  for (const Step step : {Step{4}, Step{6}, Step{8}}) {
+    Dice dice(1);
+    std::vector<double> ratios;
+    for (int i = 0; i < kPictures; ++i) {
+      const auto cast = cast_of(random_picture(dice));
+      RefinedPicture picture(grid, cast);
+      picture.advance_to(step);
+      const auto pixels = picture.pixels(), truth = true_pixels(kImage, cast);
+      ratios.push_back(std::log(squared_error_of_lines(pixels, truth, at_border) /
+                                squared_error_of_lines(pixels, truth, alike_inside)));
+    }
+    const Paired log_ratio(ratios);
+    std::printf("  step %d: squared error at borders %.3f times that inside, %.3f … %.3f\n",
+                step.value, std::exp(log_ratio.mean),
+                std::exp(log_ratio.mean - log_ratio.half_width),
+                std::exp(log_ratio.mean + log_ratio.half_width));
+    EXPECT_LE(std::abs(log_ratio.mean), log_ratio.half_width) << "at 99% confidence";
+    EXPECT_LE(log_ratio.half_width, 0.5) << "or nothing could be seen";
+  }
+}
+
+TEST(Seams, LargerTilesMakeAPictureAsGood) {
+  for (const Step step : {Step{5}, Step{8}}) {
+    Dice dice(2);
+    std::vector<double> ratios;
+    for (int i = 0; i < kPictures; ++i) {
+      const auto cast = cast_of(random_picture(dice));
+      const auto truth = true_pixels(kImage, cast);
+      const auto error = [&](int edge) {
+        RefinedPicture picture(TileGrid::squares(kImage, edge), cast);
+        picture.advance_to(step);
+        return rms_difference(picture.pixels(), truth);
+      };
+      ratios.push_back(std::log(error(64) / error(128)));
+    }
+    const Paired log_ratio(ratios);
+    std::printf("  step %d: error of tiles of 64 is %.3f times that of 128, ± %.3f\n", step.value,
+                std::exp(log_ratio.mean), log_ratio.half_width);
+    EXPECT_NEAR(log_ratio.mean, 0, log_ratio.half_width + 0.01);
+    EXPECT_LE(log_ratio.half_width, 0.05);
+  }
+}
+
+}  // namespace
+}  // namespace goldthread::test
