@@ -72,9 +72,16 @@ void ServeJob::say_welcome() {
       welcome_message(scene_, volume_, request_.size.has_value(), request_.display)});
 }
 
-/// The golden thread: the step that is repeated for ever.
+/// The golden thread: the step that is repeated for ever. It waits where the picture is to be shown
+/// without loss: what is shown then is a whole step, the same whatever came before.
 void ServeJob::on(const StepCast&) {
-  if (cluster_.view().cast() < kLastStep && !cine_.complete()) cluster_.refine_further();
+  const ViewState& view = cluster_.view();
+  const double error = rms_error(view.steps.back().quality.squared_error, view.pixels());
+  const double wanted = final_error_ ? kWorthShowingFinal * *final_error_ : request_.stop.error;
+  paused_ = is_enough({request_.stop.sampling, wanted, request_.stop.samples}, view.cast(),
+                      view.steps.back().quality, view.steps.back().rays, view.pixels()) ||
+            error < wanted;
+  if (!paused_) cluster_.refine_further();
 }
 
 void ServeJob::on(const WorkerLost& event) { request_.worker_lost(event.rank); }
@@ -233,12 +240,16 @@ void ServeJob::cast(const Camera& camera) {
   viewer_ = newest_viewer_;
   serial_ = newest_serial_;
   final_error_.reset();
+  paused_ = false;
   back_ = {camera, edits_, {}, kLargestSpatialErrorPx};
   Scene scene = scene_;
   scene.camera = camera;
   const Update update = is_moving() && cine_.idle() ? request_.display.update : Update::kAll;
-  cluster_.begin_view(scene, {request_.grid(scene_.image.size), refinement_of(request_.stop),
-                              update, moving_frame_++});
+  // From a crude picture on: what is watched becomes better step by step.
+  Refinement refinement = refinement_of(request_.stop);
+  refinement.first_threshold = Refinement{}.first_threshold;
+  cluster_.begin_view(scene,
+                      {request_.grid(scene_.image.size), refinement, update, moving_frame_++});
   back_.epoch = cluster_.view().epoch;
 }
 
@@ -262,7 +273,10 @@ void ServeJob::show(bool final) {
     cluster_.post().to_compositor(cluster_.topology().compositor(c), present);
   front_ = back_;
   front_->spatial_px = spatial_px();
-  if (final) final_error_ = estimated_error(view);
+  if (final) {
+    final_error_ = estimated_error(view);
+    if (std::exchange(paused_, false)) cluster_.refine_further();
+  }
   last_show_ = Clock::now();
   shown_at_.push_back(last_show_);
 }

@@ -101,6 +101,7 @@ class ServeJob {
   Shown back_;                  ///< what the view being cast shows
   std::optional<Shown> front_;  ///< what the pages show
   std::optional<double> final_error_;
+  bool paused_ = false;  ///< the next step is opened once the picture has been shown
   bool audience_ready_ = false;
   bool reshow_ = false;  ///< the same samples are wanted in another form
   std::uint32_t moving_frame_ = 0;

@@ -12,7 +12,7 @@ TileTask task_of(const CastView& view, TileId tile) {
   return {view.grid.rect(tile), view.refinement, view.appearance, view.source->has_surfaces()};
 }
 
-/// Colours, then places, packed; each place once, with what the tile holds there now.
+/// Colours, then places, packed, with what the tile holds there now.
 Samples pack(const TileRefinement& tile, const RenderTile& quantum,
              std::span<const SampleOffset> places) {
   Samples message{quantum.epoch, quantum.tile, quantum.from, quantum.to,
@@ -44,16 +44,16 @@ std::optional<RefinedTile> refine_tile(const CastView& view, const RenderTile& q
     }
     return true;
   };
-  if (!tile || tile->step() != quantum.from)
+  if (!tile)
     tile = std::make_unique<TileRefinement>(task_of(view, quantum.tile));
+  else if (tile->step() != quantum.from)
+    tile->restart(task_of(view, quantum.tile));
   std::vector<SampleOffset> changed;
   while (tile->step() < quantum.to) {
     if (!tile->advance(cast)) return {};
     if (tile->step() > quantum.from)
       changed.insert(changed.end(), tile->changed().begin(), tile->changed().end());
   }
-  std::sort(changed.begin(), changed.end());
-  changed.erase(std::unique(changed.begin(), changed.end()), changed.end());
   result.samples = pack(*tile, quantum, changed);
   result.quality = tile->quality();
   result.tile = std::move(tile);

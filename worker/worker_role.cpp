@@ -124,7 +124,7 @@ void WorkerRole::on(const BeginView& message) {
       CastView{message.epoch,
                message.grid,
                message.refinement,
-               {message.background, message.color_space},
+               appearance_of(message.background, message.color_space),
                make_source_(scene_, message.camera, message.grid.image)}));
 }
 

@@ -16,12 +16,9 @@ constexpr std::uint32_t kFirstSamples = 4;
 
 std::uint32_t key_of(SampleOffset place) { return (std::uint32_t(place.y) << 16) | place.x; }
 
-double bend_between(const Shown& before, const Shown& at, const Shown& after) {
-  double most = 0;
-  for (std::size_t c = 0; c < 3; ++c)
-    most = std::max(most, std::abs(double(before.value[c]) - 2 * double(at.value[c]) +
-                                   double(after.value[c])));
-  return most;
+/// The second difference of three pixels in a row.
+ShownLanes bend_between(ShownLanes before, ShownLanes at, ShownLanes after) {
+  return distance(before + after, at + at);
 }
 
 /// Calls what(x, y) for the pixels of each square.
@@ -35,10 +32,14 @@ void for_pixels(const TileLattice& lattice, std::span<const Square> squares, con
 
 }  // namespace
 
-Antialiasing::Antialiasing(ImageSize tile)
-    : apron_(tile),
-      learned_(kFirstShare * kFirstShare * kFirstPixels),
-      learned_from_(kFirstPixels) {}
+void Antialiasing::restart(ImageSize tile) {
+  apron_.restart(tile);
+  sums_.clear();
+  place_of_.clear();
+  squared_bends_ = 0;
+  learned_ = kFirstShare * kFirstShare * kFirstPixels;
+  learned_from_ = kFirstPixels;
+}
 
 std::vector<ApronPixel> Antialiasing::wanted_apron(std::span<const Square> squares) {
   std::vector<ApronPixel> wanted;
@@ -54,15 +55,17 @@ std::vector<ApronPixel> Antialiasing::wanted_apron(std::span<const Square> squar
   return wanted;
 }
 
-double Antialiasing::bend_of(TileLattice& lattice, int x, int y) {
-  const Shown& centre = lattice.at(x, y);
-  const auto before = [&](ApronPixel apron, int bx, int by) -> const Shown& {
+double Antialiasing::squared_bend(TileLattice& lattice, int x, int y) {
+  const ShownLanes centre = lattice.at(x, y);
+  const auto before = [&](ApronPixel apron, int bx, int by) {
     if (bx >= 0 && by >= 0) return lattice.at(bx, by);
     const auto& known = apron_.at(apron);
-    return known ? *known : centre;
+    return known ? known->lanes() : centre;
   };
-  return std::max(bend_between(before({-1, y}, x - 1, y), centre, lattice.at(x + 1, y)),
-                  bend_between(before({x, -1}, x, y - 1), centre, lattice.at(x, y + 1)));
+  const double bend = double(greatest(
+      greater_of(bend_between(before({-1, y}, x - 1, y), centre, lattice.at(x + 1, y)),
+              bend_between(before({x, -1}, x, y - 1), centre, lattice.at(x, y + 1)))));
+  return bend * bend;
 }
 
 std::vector<PixelOrder> Antialiasing::choose(TileLattice& lattice, std::span<const Square> squares,
@@ -74,23 +77,33 @@ std::vector<PixelOrder> Antialiasing::choose(TileLattice& lattice, std::span<con
     if (sum.count() + more <= most && sum.squared_error(share) >= plan.worth * more)
       orders.push_back({sum.place(), sum.count(), sum.count() + more});
   }
-  if (most <= kFirstSamples) return orders;
+  squared_bends_ = 0;
+  const double edge = double(plan.edge) * double(plan.edge);
   for_pixels(lattice, squares, [&](int x, int y) {
+    if (lattice.sampled_further(x, y)) return;
+    const double bend = squared_bend(lattice, x, y);
+    if (bend <= edge || most <= kFirstSamples) {
+      squared_bends_ += bend;
+      return;
+    }
     const SampleOffset place{static_cast<std::uint16_t>(x), static_cast<std::uint16_t>(y)};
-    if (find(place) != nullptr || bend_of(lattice, x, y) <= double(plan.edge)) return;
     orders.push_back({place, lattice.known(x, y) ? 1U : 0U, 1 + kFirstSamples});
   });
   return orders;
 }
 
-std::vector<PixelOrder> Antialiasing::choose_all(const TileLattice& lattice,
-                                                 std::uint32_t count) const {
+std::vector<PixelOrder> Antialiasing::choose_all(TileLattice& lattice,
+                                                 std::span<const Square> squares,
+                                                 std::uint32_t count) {
   std::vector<PixelOrder> orders;
-  for (const SampleOffset place : grid_places(lattice.tile(), 1)) {
-    const PixelSum* sum = find(place);
+  squared_bends_ = 0;
+  for_pixels(lattice, squares, [&](int x, int y) {
+    const SampleOffset place{static_cast<std::uint16_t>(x), static_cast<std::uint16_t>(y)};
+    const PixelSum* sum = lattice.sampled_further(x, y) ? find(place) : nullptr;
     const std::uint32_t held = sum != nullptr ? sum->count() : 1;
     if (held < count) orders.push_back({place, held, count});
-  }
+    if (count == 1) squared_bends_ += squared_bend(lattice, x, y);
+  });
   return orders;
 }
 
@@ -102,35 +115,30 @@ void Antialiasing::add(TileLattice& lattice, const PixelOrder& order, std::span<
   if (is_new) {
     const Sample& first = order.first == 0 ? samples[0] : lattice.sample(x, y);
     found = place_of_.emplace(key_of(order.place), sums_.size()).first;
-    sums_.emplace_back(order.place, bend_of(lattice, x, y), first, shown(first, appearance));
+    sums_.emplace_back(order.place, std::sqrt(squared_bend(lattice, x, y)), first, shown(first, appearance));
     if (order.first == 0) samples = samples.subspan(1);
   }
   PixelSum& sum = sums_[found->second];
   for (const Sample& sample : samples) sum.add(sample, shown(sample, appearance));
   if (is_new) learn(sum);
   const bool centre_was_known = lattice.with_surfaces() && lattice.known(x, y);
-  lattice.put(x, y, sum.mean(), centre_was_known ? lattice.surfaces_at(x, y) : surfaces);
+  lattice.put_mean(x, y, sum.mean(), centre_was_known ? lattice.surfaces_at(x, y) : surfaces);
 }
 
 void Antialiasing::learn(const PixelSum& sum) {
   if (sum.count() < 3) return;
   // The others' mean has an error of its own, which is not the centre's.
-  const double off = squared_distance(sum.centre(), sum.mean_of_others()) - sum.squared_error(0);
+  const double off = squared_distance(sum.centre().lanes(), sum.mean_of_others().lanes()) -
+                     sum.squared_error(squared_share());
   learned_ += std::min(1.0, off / (sum.bend() * sum.bend()));
   learned_from_ += 1;
 }
 
-double Antialiasing::squared_error(TileLattice& lattice, std::span<const Square> squares) {
+double Antialiasing::squared_error() const {
   const double share = squared_share();
-  double of_sums = 0;
-  for (const PixelSum& sum : sums_) of_sums += sum.squared_error(share);
-  double bends = 0;
-  for_pixels(lattice, squares, [&](int x, int y) {
-    if (find({static_cast<std::uint16_t>(x), static_cast<std::uint16_t>(y)}) != nullptr) return;
-    const double bend = bend_of(lattice, x, y);
-    bends += bend * bend;
-  });
-  return of_sums + bends * share;
+  double sum = squared_bends_ * share;
+  for (const PixelSum& pixel : sums_) sum += pixel.squared_error(share);
+  return sum;
 }
 
 const PixelSum* Antialiasing::find(SampleOffset place) const {

@@ -34,11 +34,11 @@ struct ApronPixel {
 /// The pixels just beyond the left and upper edge: second differences at the tile's edge need them.
 class Apron {
  public:
-  explicit Apron(ImageSize tile)
-      : tile_(tile),
-        left_(static_cast<std::size_t>(tile.height)),
-        above_(static_cast<std::size_t>(tile.width)) {}
-
+  void restart(ImageSize tile) {
+    tile_ = tile;
+    left_.assign(static_cast<std::size_t>(tile.height), {});
+    above_.assign(static_cast<std::size_t>(tile.width), {});
+  }
   ImageSize tile() const { return tile_; }
   std::optional<Shown>& at(ApronPixel pixel) {
     return pixel.x < 0 ? left_[static_cast<std::size_t>(pixel.y)]
@@ -53,7 +53,8 @@ class Apron {
 
 class Antialiasing {
  public:
-  explicit Antialiasing(ImageSize tile);
+  /// For a tile of which nothing is known.
+  void restart(ImageSize tile);
 
   /// The pixels next to `squares` (of spacing 2) that lie in the apron and are not known yet.
   std::vector<ApronPixel> wanted_apron(std::span<const Square> squares);
@@ -63,21 +64,23 @@ class Antialiasing {
   /// Centres that are wanted too are part of the order.
   std::vector<PixelOrder> choose(TileLattice& lattice, std::span<const Square> squares,
                                  const StepPlan& plan, std::uint32_t most);
+  /// All pixels get `count` samples; those of `squares` are all.
+  std::vector<PixelOrder> choose_all(TileLattice& lattice, std::span<const Square> squares,
+                                     std::uint32_t count);
   /// The samples of one order, in the order of their numbers, and the surfaces of the first.
   void add(TileLattice& lattice, const PixelOrder& order, std::span<const Sample> samples,
            std::uint32_t surfaces, const Appearance& appearance);
-  /// All pixels get `count` samples.
-  std::vector<PixelOrder> choose_all(const TileLattice& lattice, std::uint32_t count) const;
 
-  /// The sum over the pixels of `squares` (of spacing 2) with one sample, and those with several.
-  double squared_error(TileLattice& lattice, std::span<const Square> squares);
+  /// The sum over the pixels with several samples, and those of the squares last chosen from with
+  /// one.
+  double squared_error() const;
 
   std::span<const PixelSum> sums() const { return sums_; }
   const PixelSum* find(SampleOffset place) const;
   std::size_t bytes() const { return sums_.size() * (sizeof(PixelSum) + 4 * sizeof(void*)); }
 
  private:
-  double bend_of(TileLattice& lattice, int x, int y);
+  double squared_bend(TileLattice& lattice, int x, int y);
   void learn(const PixelSum& sum);
   /// The squared share of its bend that a centre is off by, as learned so far.
   double squared_share() const { return std::max(0.0, learned_) / learned_from_; }
@@ -85,8 +88,9 @@ class Antialiasing {
   Apron apron_;
   std::vector<PixelSum> sums_;
   std::unordered_map<std::uint32_t, std::size_t> place_of_;  ///< in sums_
-  double learned_;  ///< squared shares, of so many pixels
-  double learned_from_;
+  double squared_bends_ = 0;  ///< of the pixels with one sample, when they were last looked at
+  double learned_ = 0;        ///< squared shares, of so many pixels
+  double learned_from_ = 1;
 };
 
 }  // namespace goldthread

@@ -35,7 +35,9 @@ std::uint32_t start_of(std::uint32_t seed, std::uint32_t block) {
 
 }  // namespace
 
-Probes::Probes(ImageSize tile, std::uint32_t seed) : columns_(blocks_along(tile.width)) {
+void Probes::restart(ImageSize tile, std::uint32_t seed) {
+  columns_ = blocks_along(tile.width);
+  blocks_.clear();
   const int rows = blocks_along(tile.height);
   for (int row = 0; row < rows; ++row)
     for (int column = 0; column < columns_; ++column) {

@@ -16,7 +16,7 @@ namespace goldthread {
 class Probes {
  public:
   /// `seed` tells tiles apart.
-  Probes(ImageSize tile, std::uint32_t seed);
+  void restart(ImageSize tile, std::uint32_t seed);
 
   /// Of the next `count` places of each block those that are not known. The known ones count too,
   /// as places without an error: to go on to others would favour the surroundings of what is known.
@@ -37,7 +37,7 @@ class Probes {
     double mean_squared = 0;
   };
 
-  int columns_;
+  int columns_ = 0;
   std::vector<Block> blocks_;
 };
 

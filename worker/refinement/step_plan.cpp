@@ -7,29 +7,42 @@
 namespace goldthread {
 namespace {
 
-constexpr double kFirstThreshold = 136.0 / 255;
+/// Down to here the threshold is halved by each step.
+constexpr double kFineThreshold = 17.0 / 255;
 /// Relative to the threshold.
 constexpr double kBend = 0.5;
 constexpr double kEdge = 2;
 constexpr double kWorth = 0.2;
 
-/// One for three steps, two for three, then twice as many every two steps, to all.
-int probes_at(int round) {
-  if (round < 6) return 1 + round / 3;
-  return 1 << std::min(8, round / 2 - 1);
+/// How many places of each block have been probed by the time the threshold has come down to this:
+/// for each half octave below the first one to start with, and twice as many every octave where it
+/// is small.
+int probes_by(double threshold) {
+  constexpr double kMost = double(Refinement{}.first_threshold);
+  const int half_octaves = static_cast<int>(std::lround(2 * std::log2(kMost / threshold)));
+  int sum = 0;
+  for (int i = 0; i <= half_octaves && sum < 256; ++i) sum += i < 6 ? 1 + i / 3 : 1 << (i / 2 - 1);
+  return std::min(sum, 256);
+}
+
+double threshold_at(int round, double first) {
+  double threshold = first;
+  for (; round > 0 && threshold > 1.01 * kFineThreshold; --round) threshold /= 2;
+  return threshold * std::pow(2.0, -0.5 * round);
 }
 
 }  // namespace
 
-StepPlan plan_of(Step step) {
+StepPlan plan_of(Step step, const Refinement& how) {
   const int round = std::max(0, int(step.value) - int(kFirstAdaptiveStep.value));
-  const double threshold = kFirstThreshold * std::pow(2.0, -0.5 * round);
+  const double threshold = threshold_at(round, double(how.first_threshold));
   StepPlan plan;
   plan.threshold = static_cast<float>(threshold);
   plan.bend = static_cast<float>(kBend * threshold);
   plan.edge = static_cast<float>(kEdge * threshold);
   plan.worth = kWorth * kWorth * threshold * threshold;
-  plan.probes = probes_at(round);
+  plan.probes = probes_by(threshold);
+  if (round > 0) plan.probes -= probes_by(threshold_at(round - 1, double(how.first_threshold)));
   plan.even_samples = round == 0 ? 1 : 1 + (4U << std::min(round - 1, 18));
   return plan;
 }

@@ -6,7 +6,8 @@
 //   step 1     one ray in 16×16 pixels
 //   step 2     one ray in 8×8 pixels
 //   step 3 …   down to the pixel where neighbours differ by more than a threshold, below the pixel
-//              where edges need it, and some probes. The threshold falls by √2 from step to step.
+//              where edges need it, and some probes. The threshold falls from step to step: by 2
+//              while it is large, then by √2.
 
 #include <cstdint>
 
@@ -24,6 +25,6 @@ struct StepPlan {
   std::uint32_t even_samples = 1;  ///< in each pixel, for Sampling::kEveryPixel
 };
 
-StepPlan plan_of(Step step);
+StepPlan plan_of(Step step, const Refinement& how);
 
 }  // namespace goldthread

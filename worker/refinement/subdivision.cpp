@@ -11,23 +11,43 @@ struct Place {
   int y = 0;
 };
 
+/// An edge whose ends differ by less than this share of the threshold is not bent, whatever lies
+/// beyond them: most squares are done with at a glance.
+constexpr float kFlat = 0.125F;
+
+struct Corner {
+  Place place;
+  ShownLanes color;
+};
+
 /// Chooses in one square after the other.
 class Chooser {
  public:
   Chooser(TileLattice& lattice, int spacing, const SubdivisionRule& rule,
           std::vector<SampleOffset>& wanted)
-      : lattice_(lattice), spacing_(spacing), half_(spacing / 2), rule_(rule), wanted_(wanted) {}
+      : lattice_(lattice),
+        spacing_(spacing),
+        half_(spacing / 2),
+        rule_(rule),
+        flat_(kFlat * rule.difference),
+        wanted_(wanted) {}
 
   void choose(Square square, bool surprising) {
-    const int x = square.x, y = square.y;
-    const bool all = surprising || (rule_.all_five && corners_differ(x, y));
-    bool any = all || (!rule_.all_five && corners_differ(x, y));
-    if (all || !rule_.all_five) {
-      any |= edge({x, y}, {1, 0}, all);
-      any |= edge({x, y}, {0, 1}, all);
-      any |= edge({x + spacing_, y}, {0, 1}, all);
-      any |= edge({x, y + spacing_}, {1, 0}, all);
-    }
+    const int x = square.x, y = square.y, s = spacing_;
+    if (is_whole(x, y)) return;
+    const Corner a = corner(x, y), b = corner(x + s, y);
+    const Corner c = corner(x, y + s), d = corner(x + s, y + s);
+    const ShownLanes range = range_of(a, b, c, d);
+    const bool surfaces_differ = met_different_surfaces(a, b, c, d);
+    const bool differ_at_all = surfaces_differ || exceeds(range, rule_.difference);
+    if (rule_.all_five && !differ_at_all && !surprising) return;
+    if (!differ_at_all && !surprising && !exceeds(range, flat_) && !any_known(x, y)) return;
+    const bool all = surprising || rule_.all_five;
+    bool any = all || differ_at_all;
+    any |= edge(a, b, {1, 0}, all);
+    any |= edge(a, c, {0, 1}, all);
+    any |= edge(b, d, {0, 1}, all);
+    any |= edge(c, d, {1, 0}, all);
     if (any) want({x + half_, y + half_});
   }
 
@@ -39,53 +59,76 @@ class Chooser {
     wanted_.push_back({static_cast<std::uint16_t>(at.x), static_cast<std::uint16_t>(at.y)});
   }
 
-  bool differ(Place a, Place b) {
-    if (lattice_.with_surfaces() && lattice_.surfaces_at(a.x, a.y) != lattice_.surfaces_at(b.x, b.y))
-      return true;
-    return distance(lattice_.at(a.x, a.y), lattice_.at(b.x, b.y)) > rule_.difference;
+  Corner corner(int x, int y) { return {{x, y}, lattice_.at(x, y)}; }
+
+  /// Of the five places inside the square.
+  bool is_whole(int x, int y) const {
+    return lattice_.known(x + half_, y + half_) && lattice_.known(x + half_, y) &&
+           lattice_.known(x, y + half_) && lattice_.known(x + spacing_, y + half_) &&
+           lattice_.known(x + half_, y + spacing_);
+  }
+  bool any_known(int x, int y) const {
+    return lattice_.known(x + half_, y + half_) || lattice_.known(x + half_, y) ||
+           lattice_.known(x, y + half_) || lattice_.known(x + spacing_, y + half_) ||
+           lattice_.known(x + half_, y + spacing_);
   }
 
-  bool corners_differ(int x, int y) {
-    const int s = spacing_;
-    return differ({x, y}, {x + s, y + s}) || differ({x + s, y}, {x, y + s}) ||
-           differ({x, y}, {x + s, y}) || differ({x, y}, {x, y + s}) ||
-           differ({x + s, y}, {x + s, y + s}) || differ({x, y + s}, {x + s, y + s});
+  bool met_different_surfaces(const Corner& a, const Corner& b) {
+    return lattice_.with_surfaces() && lattice_.surfaces_at(a.place.x, a.place.y) !=
+                                           lattice_.surfaces_at(b.place.x, b.place.y);
+  }
+  bool met_different_surfaces(const Corner& a, const Corner& b, const Corner& c, const Corner& d) {
+    return met_different_surfaces(a, b) || met_different_surfaces(a, c) ||
+           met_different_surfaces(a, d);
+  }
+
+  bool differ(const Corner& a, const Corner& b) {
+    return exceeds(distance(a.color, b.color), rule_.difference) || met_different_surfaces(a, b);
+  }
+
+  static ShownLanes range_of(const Corner& a, const Corner& b, const Corner& c, const Corner& d) {
+    return greater_of(greater_of(a.color, b.color), greater_of(c.color, d.color)) -
+           lesser_of(lesser_of(a.color, b.color), lesser_of(c.color, d.color));
   }
 
   /// Whether the samples of an edge differ, its middle among them; it is wanted if its ends do.
-  bool edge(Place a, Place step, bool forced) {
-    const Place b{a.x + spacing_ * step.x, a.y + spacing_ * step.y};
-    const Place middle{a.x + half_ * step.x, a.y + half_ * step.y};
+  bool edge(const Corner& a, const Corner& b, Place step, bool forced) {
+    const Place middle{a.place.x + half_ * step.x, a.place.y + half_ * step.y};
     if (lattice_.wanted(middle.x, middle.y)) return true;
-    if (lattice_.known(middle.x, middle.y)) return differ(a, middle) || differ(middle, b);
-    if (!forced && !differ(a, b) && !is_bent(a, b, step)) return false;
-    want(middle);
-    return true;
+    if (lattice_.known(middle.x, middle.y)) {
+      const Corner m = corner(middle.x, middle.y);
+      return differ(a, m) || differ(m, b);
+    }
+    // A middle that is filled was looked at from the square beyond.
+    if (!forced && lattice_.filled(middle.x, middle.y)) return false;
+    if (forced || differ(a, b) || is_bent(a, b, step)) {
+      want(middle);
+      return true;
+    }
+    lattice_.at(middle.x, middle.y);
+    return false;
   }
 
-  bool is_bent(Place a, Place b, Place step) {
-    const Shown &p = lattice_.at(a.x, a.y), &q = lattice_.at(b.x, b.y);
-    const Place before{a.x - spacing_ * step.x, a.y - spacing_ * step.y};
-    const Place after{b.x + spacing_ * step.x, b.y + spacing_ * step.y};
-    const bool has_before = lattice_.contains(before.x, before.y);
-    const bool has_after = lattice_.contains(after.x, after.y);
-    const Shown& o = has_before ? lattice_.at(before.x, before.y) : p;
-    const Shown& r = has_after ? lattice_.at(after.x, after.y) : q;
-    float most = 0;
-    for (std::size_t c = 0; c < 3; ++c) {
-      const float way = q.value[c] - p.value[c];
-      // Where the tile ends the line goes on straight.
-      const float in = has_before ? p.value[c] - o.value[c] : way;
-      const float out = has_after ? r.value[c] - q.value[c] : way;
-      most = std::max(most, std::abs(in - out));
-    }
-    return most > rule_.bend;
+  bool is_bent(const Corner& a, const Corner& b, Place step) {
+    const Place before{a.place.x - spacing_ * step.x, a.place.y - spacing_ * step.y};
+    const Place after{b.place.x + spacing_ * step.x, b.place.y + spacing_ * step.y};
+    const ShownLanes way = b.color - a.color;
+    if (!exceeds(distance(a.color, b.color), flat_)) return false;
+    // Where the tile ends the line goes on straight.
+    const ShownLanes in = lattice_.contains(before.x, before.y)
+                              ? a.color - lattice_.at(before.x, before.y)
+                              : way;
+    const ShownLanes out = lattice_.contains(after.x, after.y)
+                               ? lattice_.at(after.x, after.y) - b.color
+                               : way;
+    return exceeds(distance(in, out), rule_.bend);
   }
 
   TileLattice& lattice_;
   int spacing_;
   int half_;
   const SubdivisionRule& rule_;
+  float flat_;
   std::vector<SampleOffset>& wanted_;
 };
 

@@ -17,29 +17,41 @@ int spacing_of(int x, int y) {
 
 }  // namespace
 
-Shown shown(const Sample& sample, const Appearance& appearance) {
-  const float clear = 1 - sample.alpha;
-  const std::array<float, 3> colors{sample.red, sample.green, sample.blue};
-  Shown result;
-  for (std::size_t c = 0; c < 3; ++c) {
-    float value = colors[c] + clear * static_cast<float>(appearance.background[int(c)]);
-    if (appearance.color_space == ColorSpace::kLinear)
-      value = static_cast<float>(srgb_from_linear(double(value)));
-    result.value[c] = std::clamp(value, 0.0F, 1.0F);
-  }
-  return result;
+Appearance appearance_of(const glm::dvec3& background, ColorSpace color_space) {
+  return {{{static_cast<float>(background.r), static_cast<float>(background.g),
+            static_cast<float>(background.b), 0}},
+          color_space};
 }
 
-TileLattice::TileLattice(ImageSize tile, const Appearance& appearance, bool with_surfaces)
-    : tile_(tile),
-      columns_(places_along(tile.width)),
-      rows_(places_along(tile.height)),
-      appearance_(appearance) {
-  const auto places = static_cast<std::size_t>(columns_) * static_cast<std::size_t>(rows_);
-  samples_.resize(places);
-  shown_.resize(places);
-  state_.resize(places);
-  if (with_surfaces) surfaces_.resize(places);
+Shown shown(const Sample& sample, const Appearance& appearance) {
+  const ShownLanes premultiplied{sample.red, sample.green, sample.blue, 0};
+  ShownLanes value = premultiplied + (1 - sample.alpha) * appearance.behind.lanes();
+  if (appearance.color_space == ColorSpace::kLinear) {
+    for (int c = 0; c < 3; ++c)
+      value[c] = static_cast<float>(srgb_from_linear(double(value[c])));
+  }
+  const ShownLanes black{0, 0, 0, 0}, white{1, 1, 1, 1};
+  return Shown::of(lesser_of(greater_of(value, black), white));
+}
+
+void TileLattice::restart(ImageSize tile, const Appearance& appearance, bool with_surfaces) {
+  tile_ = tile;
+  columns_ = places_along(tile.width);
+  rows_ = places_along(tile.height);
+  appearance_ = appearance;
+  std::size_t places = 0;
+  for (std::size_t level = levels_.size(); level-- > 0;) {
+    levels_[level] = {places, static_cast<std::size_t>((columns_ - 1) >> level) + 1};
+    places += levels_[level].columns * (static_cast<std::size_t>((rows_ - 1) >> level) + 1);
+  }
+  if (places > room_) {
+    samples_ = std::make_unique_for_overwrite<Sample[]>(places);
+    shown_ = std::make_unique_for_overwrite<Shown[]>(places);
+    room_ = places;
+  }
+  state_.assign(places, 0);
+  surfaces_.resize(with_surfaces ? places : 0);
+  current_ = 1;
 }
 
 void TileLattice::put(int x, int y, const Sample& sample, std::uint32_t surfaces) {
@@ -50,18 +62,22 @@ void TileLattice::put(int x, int y, const Sample& sample, std::uint32_t surfaces
   if (with_surfaces()) surfaces_[i] = surfaces;
 }
 
+void TileLattice::put_mean(int x, int y, const Sample& mean, std::uint32_t surfaces) {
+  put(x, y, mean, surfaces);
+  state_[index(x, y)] = kSampledFurther;
+}
+
 int TileLattice::pixels_of_block(int x, int y) const {
   return std::min(kCoarsestSpacing, tile_.width - x) * std::min(kCoarsestSpacing, tile_.height - y);
 }
 
-Shown TileLattice::filled_at(int x, int y) {
+ShownLanes TileLattice::filled_at(int x, int y) {
   const int s = spacing_of(x, y);
   const bool across = (x & s) != 0, down = (y & s) != 0;
-  if (across && down) {
-    return midpoint(midpoint(at(x - s, y), at(x + s, y)), midpoint(at(x, y - s), at(x, y + s)));
-  }
-  if (across) return midpoint(at(x - s, y), at(x + s, y));
-  return midpoint(at(x, y - s), at(x, y + s));
+  if (across && down)
+    return middle(middle(at(x - s, y), at(x + s, y)), middle(at(x, y - s), at(x, y + s)));
+  if (across) return middle(at(x - s, y), at(x + s, y));
+  return middle(at(x, y - s), at(x, y + s));
 }
 
 std::uint32_t TileLattice::surfaces_at(int x, int y) {
@@ -76,7 +92,7 @@ std::uint32_t TileLattice::surfaces_at(int x, int y) {
 void TileLattice::forget_filled() {
   if (++current_ < kWanted) return;
   std::replace_if(
-      state_.begin(), state_.end(), [](std::uint8_t state) { return state != kKnown; },
+      state_.begin(), state_.end(), [](std::uint8_t state) { return state < kKnown; },
       std::uint8_t{0});
   current_ = 1;
 }

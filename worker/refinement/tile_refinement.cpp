@@ -21,23 +21,27 @@ std::uint32_t seed_of(const PixelRect& rect) {
 
 }  // namespace
 
-TileRefinement::TileRefinement(const TileTask& task)
-    : task_(task),
-      lattice_({task.rect.width, task.rect.height}, task.appearance, task.with_surfaces),
-      antialiasing_(lattice_.tile()),
-      probes_(lattice_.tile(), seed_of(task.rect)) {}
+void TileRefinement::restart(const TileTask& task) {
+  task_ = task;
+  const ImageSize tile{task.rect.width, task.rect.height};
+  lattice_.restart(tile, task.appearance, task.with_surfaces);
+  antialiasing_.restart(tile);
+  probes_.restart(tile, seed_of(task.rect));
+  finest_.clear();
+  surprises_.clear();
+  changed_.clear();
+  step_ = kNoStep;
+  quality_ = {};
+}
 
 bool TileRefinement::advance(const Cast& cast) {
   changed_.clear();
   step_ = step_.next();
   lattice_.forget_filled();
-  const StepPlan plan = plan_of(step_);
   if (step_ < kFirstAdaptiveStep) return advance_coarsely(cast);
+  const StepPlan plan = plan_of(step_, task_.how);
   const bool even = task_.how.sampling == Sampling::kEveryPixel;
   if (!(even ? advance_evenly(plan, cast) : advance_adaptively(plan, cast))) return false;
-  std::sort(changed_.begin(), changed_.end());
-  changed_.erase(std::unique(changed_.begin(), changed_.end()), changed_.end());
-  measure_gradient();
   return true;
 }
 
@@ -49,16 +53,18 @@ bool TileRefinement::advance_coarsely(const Cast& cast) {
   return true;
 }
 
+bool TileRefinement::cast_positions(const Cast& cast) {
+  samples_.resize(positions_.size());
+  met_.resize(positions_.size());
+  return positions_.empty() || cast(positions_, samples_, met_);
+}
+
 bool TileRefinement::cast_places(std::span<const SampleOffset> places, const Cast& cast) {
-  if (places.empty()) return true;
-  std::vector<PixelPosition> positions(places.size());
-  std::transform(places.begin(), places.end(), positions.begin(),
-                 [&](SampleOffset place) { return position_of(task_.rect, place); });
-  std::vector<Sample> samples(places.size());
-  std::vector<std::uint32_t> surfaces(places.size());
-  if (!cast(positions, samples, surfaces)) return false;
+  positions_.clear();
+  for (const SampleOffset place : places) positions_.push_back(position_of(task_.rect, place));
+  if (!cast_positions(cast)) return false;
   for (std::size_t i = 0; i < places.size(); ++i)
-    lattice_.put(places[i].x, places[i].y, samples[i], surfaces[i]);
+    lattice_.put(places[i].x, places[i].y, samples_[i], met_[i]);
   changed_.insert(changed_.end(), places.begin(), places.end());
   return true;
 }
@@ -74,18 +80,16 @@ bool TileRefinement::advance_evenly(const StepPlan& plan, const Cast& cast) {
     if (!cast_grid(1, cast)) return false;
     finest_ = squares_of(lattice_, 2);
     if (!cast_apron(cast)) return false;
-  } else {
-    const auto count = std::min(plan.even_samples, task_.how.most_samples);
-    if (!cast_orders(antialiasing_.choose_all(lattice_, count), cast)) return false;
   }
-  quality_.squared_error = antialiasing_.squared_error(lattice_, finest_);
+  const auto count = std::min(plan.even_samples, task_.how.most_samples);
+  if (!cast_orders(antialiasing_.choose_all(lattice_, finest_, count), cast)) return false;
+  quality_.squared_error = antialiasing_.squared_error();
   return true;
 }
 
 bool TileRefinement::advance_adaptively(const StepPlan& plan, const Cast& cast) {
   if (!subdivide(plan, cast) || !antialias(plan, cast) || !probe(plan, cast)) return false;
-  quality_.squared_error =
-      probes_.squared_error(lattice_) + antialiasing_.squared_error(lattice_, finest_);
+  quality_.squared_error = probes_.squared_error(lattice_) + antialiasing_.squared_error();
   return true;
 }
 
@@ -93,11 +97,10 @@ bool TileRefinement::subdivide(const StepPlan& plan, const Cast& cast) {
   const bool all_five = task_.how.sampling == Sampling::kSubdivision;
   const SubdivisionRule rule{plan.threshold, plan.bend, all_five};
   std::vector<Square> squares = squares_of(lattice_, kFineGridSpacing);
-  std::vector<SampleOffset> wanted;
   for (int spacing = kFineGridSpacing; spacing > 1; spacing /= 2) {
-    wanted.clear();
-    choose(lattice_, squares, spacing, rule, surprises_, wanted);
-    if (!cast_places(wanted, cast)) return false;
+    wanted_.clear();
+    choose(lattice_, squares, spacing, rule, surprises_, wanted_);
+    if (!cast_places(wanted_, cast)) return false;
     squares = quarters(lattice_, squares, spacing);
     if (spacing == 4) finest_ = squares;
   }
@@ -107,15 +110,12 @@ bool TileRefinement::subdivide(const StepPlan& plan, const Cast& cast) {
 
 bool TileRefinement::cast_apron(const Cast& cast) {
   const auto wanted = antialiasing_.wanted_apron(finest_);
-  if (wanted.empty()) return true;
-  std::vector<PixelPosition> positions;
+  positions_.clear();
   for (const ApronPixel pixel : wanted)
-    positions.push_back(sample_position(task_.rect.x + pixel.x, task_.rect.y + pixel.y, 0));
-  std::vector<Sample> samples(wanted.size());
-  std::vector<std::uint32_t> surfaces(wanted.size());
-  if (!cast(positions, samples, surfaces)) return false;
+    positions_.push_back(sample_position(task_.rect.x + pixel.x, task_.rect.y + pixel.y, 0));
+  if (!cast_positions(cast)) return false;
   for (std::size_t i = 0; i < wanted.size(); ++i)
-    antialiasing_.put_apron(wanted[i], shown(samples[i], task_.appearance));
+    antialiasing_.put_apron(wanted[i], shown(samples_[i], task_.appearance));
   return true;
 }
 
@@ -126,20 +126,17 @@ bool TileRefinement::antialias(const StepPlan& plan, const Cast& cast) {
 }
 
 bool TileRefinement::cast_orders(std::span<const PixelOrder> orders, const Cast& cast) {
-  std::vector<PixelPosition> positions;
+  positions_.clear();
   for (const PixelOrder& order : orders)
     for (std::uint32_t number = order.first; number < order.last; ++number)
-      positions.push_back(sample_position(task_.rect.x + order.place.x,
-                                          task_.rect.y + order.place.y, number));
-  if (positions.empty()) return true;
-  std::vector<Sample> samples(positions.size());
-  std::vector<std::uint32_t> surfaces(positions.size());
-  if (!cast(positions, samples, surfaces)) return false;
+      positions_.push_back(sample_position(task_.rect.x + order.place.x,
+                                           task_.rect.y + order.place.y, number));
+  if (!cast_positions(cast)) return false;
   std::size_t at = 0;
   for (const PixelOrder& order : orders) {
     const std::size_t count = order.last - order.first;
-    antialiasing_.add(lattice_, order, std::span(samples).subspan(at, count),
-                      surfaces[at], task_.appearance);
+    antialiasing_.add(lattice_, order, std::span(samples_).subspan(at, count), met_[at],
+                      task_.appearance);
     changed_.push_back(order.place);
     at += count;
   }
@@ -150,12 +147,14 @@ bool TileRefinement::probe(const StepPlan& plan, const Cast& cast) {
   lattice_.forget_filled();
   const auto places = probes_.next(lattice_, plan.probes);
   std::vector<Shown> filled;
-  for (const SampleOffset place : places) filled.push_back(lattice_.filled_at(place.x, place.y));
+  filled.reserve(places.size());
+  for (const SampleOffset place : places)
+    filled.push_back(Shown::of(lattice_.at(place.x, place.y)));
   if (!cast_places(places, cast)) return false;
   for (std::size_t i = 0; i < places.size(); ++i) {
-    const Shown& found = lattice_.at(places[i].x, places[i].y);
-    const bool surprising = distance(found, filled[i]) > plan.threshold;
-    probes_.note(places[i], squared_distance(found, filled[i]), surprising);
+    const ShownLanes found = lattice_.at(places[i].x, places[i].y), expected = filled[i].lanes();
+    const bool surprising = exceeds(distance(found, expected), plan.threshold);
+    probes_.note(places[i], squared_distance(found, expected), surprising);
     if (surprising) surprises_.push_back(places[i]);
   }
   return true;
@@ -170,9 +169,9 @@ double TileRefinement::error_of_grid(int spacing) {
   const int step = between ? 2 * spacing : spacing;
   for (int y = 0; y < lattice_.tile().height; y += spacing)
     for (int x = 0; x < lattice_.tile().width; x += step) {
-      const Shown &left = lattice_.at(x, y), &right = lattice_.at(x + step, y);
+      const ShownLanes left = lattice_.at(x, y), right = lattice_.at(x + step, y);
       sum += between ? kLeftByHalving * squared_distance(lattice_.at(x + spacing, y),
-                                                         midpoint(left, right))
+                                                         middle(left, right))
                      : kErrorOfDifference * squared_distance(left, right);
       ++count;
     }
@@ -180,12 +179,12 @@ double TileRefinement::error_of_grid(int spacing) {
 }
 
 void TileRefinement::measure_gradient() {
-  const int spacing = step_ == Step{1} ? kCoarsestSpacing : kFineGridSpacing / 2;
+  const int spacing = step_ == Step{1} ? kCoarsestSpacing : kFineGridSpacing;
   double sum = 0;
   int count = 0;
   for (int y = 0; y < lattice_.tile().height; y += spacing)
     for (int x = 0; x < lattice_.tile().width; x += spacing) {
-      const Shown& at = lattice_.at(x, y);
+      const ShownLanes at = lattice_.at(x, y);
       sum += squared_distance(at, lattice_.at(x + spacing, y)) +
              squared_distance(at, lattice_.at(x, y + spacing));
       ++count;

@@ -33,14 +33,16 @@ class TileRefinement {
   using Cast = std::function<bool(std::span<const PixelPosition> positions,
                                   std::span<Sample> samples, std::span<std::uint32_t> surfaces)>;
 
-  explicit TileRefinement(const TileTask& task);
+  explicit TileRefinement(const TileTask& task) { restart(task); }
+  /// As if new, in the same memory.
+  void restart(const TileTask& task);
 
   /// One step further. False if `cast` gave up; the tile is then of no use any more.
   bool advance(const Cast& cast);
   Step step() const { return step_; }
   const TileQuality& quality() const { return quality_; }
 
-  /// The places that the last step has changed, each once.
+  /// The places that the last step has changed; one may be there twice.
   std::span<const SampleOffset> changed() const { return changed_; }
   const Sample& sample(SampleOffset place) const { return lattice_.sample(place.x, place.y); }
   const TileLattice& lattice() const { return lattice_; }
@@ -61,10 +63,17 @@ class TileRefinement {
   void measure_gradient();
   double error_of_grid(int spacing);
 
+  /// Casts rays through positions_, to samples_ and met_.
+  bool cast_positions(const Cast& cast);
+
   TileTask task_;
   TileLattice lattice_;
   Antialiasing antialiasing_;
   Probes probes_;
+  std::vector<PixelPosition> positions_;  ///< of a batch of rays, and what they bring
+  std::vector<Sample> samples_;
+  std::vector<std::uint32_t> met_;
+  std::vector<SampleOffset> wanted_;
   std::vector<Square> finest_;  ///< squares of spacing 2 in which something is known
   std::vector<SampleOffset> surprises_;
   Step step_ = kNoStep;
