@@ -11,8 +11,8 @@ namespace {
 
 constexpr int kFewEdge = 4;
 constexpr int kManyEdge = 32;
-/// Of a channel, within a pixel: more than that is sampled further.
-constexpr float kFlat = 1.0F / 255;
+/// A second difference of a channel, within a pixel: more than that is sampled further.
+constexpr double kStraight = 0.25 / 255;
 
 /// The samples of a regular grid of edge × edge in a pixel.
 std::vector<Sample> samples_of(int x, int y, int edge, const TileRefinement::Cast& cast) {
@@ -26,12 +26,23 @@ std::vector<Sample> samples_of(int x, int y, int edge, const TileRefinement::Cas
   return samples;
 }
 
-bool is_flat(std::span<const Sample> samples) {
-  return std::all_of(samples.begin(), samples.end(), [&](const Sample& sample) {
-    return std::abs(sample.red - samples[0].red) < kFlat &&
-           std::abs(sample.green - samples[0].green) < kFlat &&
-           std::abs(sample.blue - samples[0].blue) < kFlat;
-  });
+double bend_of(const Sample& a, const Sample& b, const Sample& c) {
+  return std::max({std::abs(double(a.red) - 2 * double(b.red) + double(c.red)),
+                   std::abs(double(a.green) - 2 * double(b.green) + double(c.green)),
+                   std::abs(double(a.blue) - 2 * double(b.blue) + double(c.blue))});
+}
+
+/// Whether a grid of samples bends nowhere: then its mean is that of the pixel.
+bool is_straight(std::span<const Sample> samples) {
+  for (int line = 0; line < kFewEdge; ++line)
+    for (int i = 0; i + 2 < kFewEdge; ++i) {
+      const Sample* const across = samples.data() + line * kFewEdge + i;
+      const Sample* const down = samples.data() + i * kFewEdge + line;
+      if (bend_of(across[0], across[1], across[2]) > kStraight ||
+          bend_of(down[0], down[kFewEdge], down[2 * kFewEdge]) > kStraight)
+        return false;
+    }
+  return true;
 }
 
 Sample mean_of(std::span<const Sample> samples) {
@@ -68,7 +79,7 @@ Sample grey(double value) {
 TileRefinement::Cast cast_of(const PictureFunction& picture) {
   return [picture](std::span<const PixelPosition> positions, std::span<Sample> samples,
                    std::span<std::uint32_t>) {
-    std::transform(positions.begin(), positions.end(), samples.begin(), picture);
+    std::transform(positions.begin(), positions.end(), samples.begin(), std::cref(picture));
     return true;
   };
 }
@@ -88,13 +99,14 @@ std::vector<Sample> pixels_of(const TileRefinement& tile) {
   std::vector<std::uint8_t> known;
   for (int y = 0; y < lattice.rows(); ++y)
     for (int x = 0; x < lattice.columns(); ++x) {
-      places.push_back(lattice.sample(x, y));
       known.push_back(lattice.known(x, y) ? 1 : 0);
+      places.push_back(lattice.known(x, y) ? lattice.sample(x, y) : Sample{});
     }
   fill_holes({lattice.columns(), lattice.rows(), places, known}, Filter::kBilinear);
   std::vector<Sample> pixels;
   for (int y = 0; y < lattice.tile().height; ++y)
-    for (int x = 0; x < lattice.tile().width; ++x) pixels.push_back(places[lattice.index(x, y)]);
+    for (int x = 0; x < lattice.tile().width; ++x)
+      pixels.push_back(places[std::size_t(y * lattice.columns() + x)]);
   return pixels;
 }
 
@@ -136,7 +148,7 @@ std::vector<Sample> true_pixels(ImageSize size, const TileRefinement::Cast& cast
   for (int y = 0; y < size.height; ++y)
     for (int x = 0; x < size.width; ++x) {
       auto samples = samples_of(x, y, kFewEdge, cast);
-      if (!is_flat(samples)) samples = samples_of(x, y, kManyEdge, cast);
+      if (!is_straight(samples)) samples = samples_of(x, y, kManyEdge, cast);
       pixels.push_back(mean_of(samples));
     }
   return pixels;

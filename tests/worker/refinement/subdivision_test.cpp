@@ -18,50 +18,53 @@ namespace goldthread::test {
 namespace {
 
 using Places = std::set<SampleOffset>;
-constexpr ImageSize kTile{64, 64};
 constexpr int kCoarse = 8;
 
-/// All of a lattice's grid of some spacing, cast.
-TileLattice lattice_of(const PictureFunction& picture, int spacing = kCoarse,
-                       const SurfaceFunction& surfaces = {}, PixelRect rect = {0, 0, 64, 64}) {
-  TileLattice lattice({rect.width, rect.height}, {}, bool(surfaces));
-  for (const SampleOffset place : grid_places(lattice.tile(), spacing)) {
-    const PixelPosition position = position_of(rect, place);
-    lattice.put(place.x, place.y, picture(position), surfaces ? surfaces(position) : 0);
-  }
-  return lattice;
-}
+/// What is cast, and where.
+struct Tile {
+  PictureFunction picture;
+  SurfaceFunction surfaces = {};
+  PixelRect rect{0, 0, 64, 64};
 
-/// What one level wants, of a lattice that stays as it is.
-Places chosen(TileLattice lattice, const SubdivisionRule& rule, int spacing = kCoarse) {
+  TileLattice coarse_grid() const {
+    TileLattice lattice;
+    lattice.restart({rect.width, rect.height}, {}, bool(surfaces));
+    for (const SampleOffset place : grid_places(lattice.tile(), kCoarse)) {
+      const PixelPosition position = position_of(rect, place);
+      lattice.put(place.x, place.y, picture(position), surfaces ? surfaces(position) : 0);
+    }
+    return lattice;
+  }
+};
+
+/// What the first level wants.
+Places chosen(const Tile& tile, const SubdivisionRule& rule,
+              std::span<const SampleOffset> surprises = {}) {
+  TileLattice lattice = tile.coarse_grid();
   std::vector<SampleOffset> wanted;
-  const auto squares = squares_of(lattice, spacing);
-  choose(lattice, squares, spacing, rule, {}, wanted);
+  choose(lattice, squares_of(lattice, kCoarse), kCoarse, rule, surprises, wanted);
   Places places(wanted.begin(), wanted.end());
   EXPECT_EQ(places.size(), wanted.size()) << "a place was wanted twice";
   return places;
 }
 
 /// All levels, from the squares given down to the pixels; what they wanted.
-Places subdivided(TileLattice& lattice, std::vector<Square> squares, int spacing,
-                  const SubdivisionRule& rule, const PictureFunction& picture,
-                  PixelRect rect = {0, 0, 64, 64}) {
+Places subdivided(const Tile& tile, const SubdivisionRule& rule, std::vector<Square> squares) {
+  TileLattice lattice = tile.coarse_grid();
   Places all;
-  for (; spacing > 1; spacing /= 2) {
+  for (int spacing = kCoarse; spacing > 1; spacing /= 2) {
     std::vector<SampleOffset> wanted;
     choose(lattice, squares, spacing, rule, {}, wanted);
     for (const SampleOffset place : wanted)
-      lattice.put(place.x, place.y, picture(position_of(rect, place)), 0);
+      lattice.put(place.x, place.y, tile.picture(position_of(tile.rect, place)), 0);
     all.insert(wanted.begin(), wanted.end());
     squares = quarters(lattice, squares, spacing);
   }
   return all;
 }
 
-Places subdivided(const PictureFunction& picture, const SubdivisionRule& rule,
-                  PixelRect rect = {0, 0, 64, 64}) {
-  TileLattice lattice = lattice_of(picture, kCoarse, {}, rect);
-  return subdivided(lattice, squares_of(lattice, kCoarse), kCoarse, rule, picture, rect);
+Places subdivided(const Tile& tile, const SubdivisionRule& rule) {
+  return subdivided(tile, rule, squares_of(tile.coarse_grid(), kCoarse));
 }
 
 bool includes(const Places& all, const Places& some) {
@@ -108,8 +111,7 @@ std::size_t samples_of_figure_8(bool all_five) {
     const auto x = static_cast<std::size_t>(p.x), y = static_cast<std::size_t>(p.y);
     return grey(x < 9 && y < 9 && kFigure8[y][x] == '#' ? 1 : 0);
   };
-  TileLattice lattice = lattice_of(picture);
-  return 4 + subdivided(lattice, {{0, 0}}, 8, {0.5F, 1e9F, all_five}, picture).size();
+  return 4 + subdivided({picture}, {0.5F, 1e9F, all_five}, {{0, 0}}).size();
 }
 
 TEST(Subdivision, TheFullMethodTakes51SamplesOfThePapersPattern) {
@@ -125,8 +127,8 @@ TEST(Subdivision, DifferentSurfacesAreToldApartWhateverTheColours) {
   const SurfaceFunction two = [](PixelPosition p) { return p.x < 30 ? 1U : 2U; };
   const SurfaceFunction one = [](PixelPosition) { return 1U; };
   const SubdivisionRule rule{2, 1e9F, false};
-  EXPECT_TRUE(chosen(lattice_of(flat, kCoarse, one), rule).empty());
-  const Places wanted = chosen(lattice_of(flat, kCoarse, two), rule);
+  EXPECT_TRUE(chosen({flat, one}, rule).empty());
+  const Places wanted = chosen({flat, two}, rule);
   for (int y = 0; y <= 64; y += 4)
     EXPECT_TRUE(wanted.contains({28, static_cast<std::uint16_t>(y)})) << y;
   EXPECT_EQ(wanted.size(), 17U)
@@ -134,38 +136,39 @@ TEST(Subdivision, DifferentSurfacesAreToldApartWhateverTheColours) {
 }
 
 TEST(Subdivision, AConstantPictureTakesNothingAtAnyThreshold) {
-  const TileLattice lattice = lattice_of([](PixelPosition) { return grey(0.3); });
-  for (const bool all_five : {false, true}) EXPECT_TRUE(chosen(lattice, {0, 0, all_five}).empty());
+  const Tile tile{[](PixelPosition) { return grey(0.3); }};
+  for (const bool all_five : {false, true}) EXPECT_TRUE(chosen(tile, {0, 0, all_five}).empty());
 }
 
 TEST(Subdivision, ALinearPictureTakesNothingWhereNeighboursDifferByLessThanTheThreshold) {
   // A step is 8 · 0.004 along each axis, in opposite directions along one diagonal.
-  const TileLattice lattice = lattice_of([](PixelPosition p) {
+  const Tile tile{[](PixelPosition p) {
     return Sample{float(0.1 + 0.004 * double(p.x + p.y)), float(0.9 - 0.004 * double(p.x)), 0.5F,
                   1};
-  });
+  }};
   // However small the threshold of the bend is, above rounding.
-  EXPECT_TRUE(chosen(lattice, {0.065F, 1e-6F, false}).empty());
-  EXPECT_TRUE(chosen(lattice, {0.065F, 1e-6F, true}).empty());
-  EXPECT_FALSE(chosen(lattice, {0.031F, 1e-6F, false}).empty());
+  EXPECT_TRUE(chosen(tile, {0.065F, 1e-6F, false}).empty());
+  EXPECT_TRUE(chosen(tile, {0.065F, 1e-6F, true}).empty());
+  EXPECT_FALSE(chosen(tile, {0.031F, 1e-6F, false}).empty());
 }
 
-TEST(Subdivision, ABentPictureTakesEdgesWhoseEndsAreTheSame) {
-  const TileLattice lattice = lattice_of([](PixelPosition p) {
-    const double x = (double(p.x) - 20.5) / 16;  // the top of a parabola between two samples
-    return grey(0.5 - 0.2 * x * x);
-  });
-  EXPECT_FALSE(chosen(lattice, {0.5F, 0.09F, false}).empty());
-  EXPECT_TRUE(chosen(lattice, {0.5F, 0.11F, false}).empty()) << "it is 2 · 0.2 · (8/16)² = 0.1";
+TEST(Subdivision, ABentPictureTakesEdgesWhoseEndsDifferByLessThanTheThreshold) {
+  const Tile tile{[](PixelPosition p) {
+    const double x = (double(p.x) - 0.5) / 8;
+    return grey(0.01 * x * x);
+  }};
+  // Each difference is 0.02 more than the one before it, twice that over an edge.
+  EXPECT_FALSE(chosen(tile, {0.5F, 0.039F, false}).empty());
+  EXPECT_TRUE(chosen(tile, {0.5F, 0.041F, false}).empty());
 }
 
 TEST(Subdivision, OfALevelThePartialMethodTakesNothingThatTheFullOneDoesNot) {
   Dice dice(1);
   for (int i = 0; i < 200; ++i) {
-    const TileLattice lattice = lattice_of(random_picture(dice));
+    const Tile tile{random_picture(dice)};
     const auto threshold = static_cast<float>(dice.between(0.02, 0.6));
-    const Places partial = chosen(lattice, {threshold, 1e9F, false});
-    const Places full = chosen(lattice, {threshold, 1e9F, true});
+    const Places partial = chosen(tile, {threshold, 1e9F, false});
+    const Places full = chosen(tile, {threshold, 1e9F, true});
     EXPECT_TRUE(includes(full, partial)) << i;
   }
 }
@@ -174,8 +177,8 @@ TEST(Subdivision, OfAStraightEdgeThePartialMethodTakesNothingThatTheFullOneDoesN
   Dice dice(2);
   for (int i = 0; i < 200; ++i) {
     const PictureFunction edge = random_edge(dice);
-    const Places partial = subdivided(edge, {0.5F, 1e9F, false});
-    const Places full = subdivided(edge, {0.5F, 1e9F, true});
+    const Places partial = subdivided({edge}, {0.5F, 1e9F, false});
+    const Places full = subdivided({edge}, {0.5F, 1e9F, true});
     EXPECT_TRUE(includes(full, partial)) << i;
     EXPECT_LE(partial.size(), full.size());
   }
@@ -184,12 +187,12 @@ TEST(Subdivision, OfAStraightEdgeThePartialMethodTakesNothingThatTheFullOneDoesN
 TEST(Subdivision, OfALevelALowerThresholdTakesAllThatAHigherOneDoes) {
   Dice dice(3);
   for (int i = 0; i < 200; ++i) {
-    const TileLattice lattice = lattice_of(random_picture(dice));
+    const Tile tile{random_picture(dice)};
     const auto high = static_cast<float>(dice.between(0.02, 0.6));
     const auto low = static_cast<float>(dice.between(0.01, double(high)));
     for (const bool all_five : {false, true})
-      EXPECT_TRUE(includes(chosen(lattice, {low, 0.5F * low, all_five}),
-                           chosen(lattice, {high, 0.5F * high, all_five})))
+      EXPECT_TRUE(includes(chosen(tile, {low, 0.5F * low, all_five}),
+                           chosen(tile, {high, 0.5F * high, all_five})))
           << i;
   }
 }
@@ -209,9 +212,8 @@ TEST(Subdivision, TilesChooseTheSameAlongTheEdgeThatTheyShare) {
     const PictureFunction picture = random_picture(dice);
     const auto threshold = static_cast<float>(dice.between(0.05, 0.4));
     const SubdivisionRule rule{threshold, 0.5F * threshold, false};
-    const auto left = along_the_seam(chosen(lattice_of(picture), rule), 64);
-    const auto right =
-        along_the_seam(chosen(lattice_of(picture, kCoarse, {}, {64, 0, 64, 64}), rule), 0);
+    const auto left = along_the_seam(chosen({picture}, rule), 64);
+    const auto right = along_the_seam(chosen({picture, {}, {64, 0, 64, 64}}, rule), 0);
     EXPECT_EQ(left, right) << i;
     on_seams += static_cast<int>(left.size());
   }
@@ -225,8 +227,8 @@ TEST(Subdivision, WithoutTheBendTilesChooseTheSameDownToThePixel) {
     const PictureFunction picture = random_picture(dice);
     const auto threshold = static_cast<float>(dice.between(0.05, 0.4));
     const SubdivisionRule rule{threshold, 1e9F, false};
-    auto left = along_the_seam(subdivided(picture, rule), 64);
-    auto right = along_the_seam(subdivided(picture, rule, {64, 0, 64, 64}), 0);
+    auto left = along_the_seam(subdivided({picture}, rule), 64);
+    auto right = along_the_seam(subdivided({picture, {}, {64, 0, 64, 64}}, rule), 0);
     // The left tile's replicated column serves what lies between: at the pixels nothing does.
     std::erase_if(left, [](int y) { return y % 2 != 0; });
     std::erase_if(right, [](int y) { return y % 2 != 0; });
@@ -236,17 +238,15 @@ TEST(Subdivision, WithoutTheBendTilesChooseTheSameDownToThePixel) {
   EXPECT_GT(on_seams, 200);
 }
 
-TEST(Subdivision, ASurpriseSubdividesTheSquaresThatHoldIt) {
-  TileLattice lattice = lattice_of([](PixelPosition) { return grey(0.3); });
-  std::vector<SampleOffset> wanted;
+TEST(Subdivision, ASurpriseSubdividesTheSquareThatHoldsIt) {
+  const Tile tile{[](PixelPosition) { return grey(0.3); }};
   const std::vector<SampleOffset> surprises{{19, 21}};
-  choose(lattice, squares_of(lattice, kCoarse), kCoarse, {0.5F, 1e9F, false}, surprises, wanted);
-  const Places places(wanted.begin(), wanted.end());
-  EXPECT_EQ(places, (Places{{20, 16}, {16, 20}, {20, 20}, {24, 20}, {20, 24}}));
+  EXPECT_EQ(chosen(tile, {0.5F, 1e9F, false}, surprises),
+            (Places{{20, 16}, {16, 20}, {20, 20}, {24, 20}, {20, 24}}));
 }
 
 TEST(Subdivision, QuartersAreThoseOfSquaresInWhichSomethingIsKnown) {
-  TileLattice lattice = lattice_of([](PixelPosition) { return grey(0.3); });
+  TileLattice lattice = Tile{[](PixelPosition) { return grey(0.3); }}.coarse_grid();
   lattice.put(12, 8, grey(0.3), 0);
   const auto fine = quarters(lattice, squares_of(lattice, kCoarse), kCoarse);
   std::set<std::pair<int, int>> corners;
