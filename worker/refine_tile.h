@@ -19,7 +19,7 @@ constexpr std::size_t kBatchRays = 512;
 
 struct RefinedTile {
   Samples samples;  ///< what the quantum changed, ready to be sent
-  CastCounts counts;
+  CastCounts counts;  ///< of the steps after quantum.from
   TileQuality quality;
   std::unique_ptr<TileRefinement> tile;  ///< to go on with
 };

@@ -136,6 +136,17 @@ TEST_P(History, AnInterruptedVisitLeavesNoTrace) {
   EXPECT_GT(interrupted, 3);
 }
 
+TEST_P(History, StepsTakenAgainDoNotCount) {
+  const CastView view = scenery(GetParam());
+  const auto rays_of = [&](std::unique_ptr<TileRefinement> tile) {
+    return refine_tile(view, {{1}, {0}, {3}, {5}}, std::move(tile), [] { return false; })
+        ->counts.rays;
+  };
+  Taken taken;
+  taken.visit(view, {0}, kNoStep, {3});
+  EXPECT_EQ(rays_of(nullptr), rays_of(std::move(taken.tile)));
+}
+
 TEST_P(History, TheOrderOfTheTilesDoesNotMatter) {
   const CastView view = scenery(GetParam());
   std::vector<Taken> together(kGrid.count());

@@ -14,11 +14,12 @@ constexpr int kManyEdge = 32;
 /// A second difference of a channel, within a pixel: more than that is sampled further.
 constexpr double kStraight = 0.25 / 255;
 
-/// The samples of a regular grid of edge × edge in a pixel.
-std::vector<Sample> samples_of(int x, int y, int edge, const TileRefinement::Cast& cast) {
+/// The samples of a regular grid of edge × edge in a pixel, and `beyond` more on each side.
+std::vector<Sample> samples_of(int x, int y, int edge, int beyond,
+                               const TileRefinement::Cast& cast) {
   std::vector<PixelPosition> positions;
-  for (int j = 0; j < edge; ++j)
-    for (int i = 0; i < edge; ++i)
+  for (int j = -beyond; j < edge + beyond; ++j)
+    for (int i = -beyond; i < edge + beyond; ++i)
       positions.push_back({float(x + (i + 0.5) / edge), float(y + (j + 0.5) / edge)});
   std::vector<Sample> samples(positions.size());
   std::vector<std::uint32_t> surfaces(positions.size());
@@ -32,14 +33,16 @@ double bend_of(const Sample& a, const Sample& b, const Sample& c) {
                    std::abs(double(a.blue) - 2 * double(b.blue) + double(c.blue))});
 }
 
-/// Whether a grid of samples bends nowhere: then its mean is that of the pixel.
+/// Whether a grid of samples bends nowhere, in the pixel or just beyond, where an edge may have cut
+/// off a corner: then the mean of few is that of the pixel.
 bool is_straight(std::span<const Sample> samples) {
-  for (int line = 0; line < kFewEdge; ++line)
-    for (int i = 0; i + 2 < kFewEdge; ++i) {
-      const Sample* const across = samples.data() + line * kFewEdge + i;
-      const Sample* const down = samples.data() + i * kFewEdge + line;
+  constexpr int kEdge = kFewEdge + 2;
+  for (int line = 0; line < kEdge; ++line)
+    for (int i = 0; i + 2 < kEdge; ++i) {
+      const Sample* const across = samples.data() + line * kEdge + i;
+      const Sample* const down = samples.data() + i * kEdge + line;
       if (bend_of(across[0], across[1], across[2]) > kStraight ||
-          bend_of(down[0], down[kFewEdge], down[2 * kFewEdge]) > kStraight)
+          bend_of(down[0], down[kEdge], down[2 * kEdge]) > kStraight)
         return false;
     }
   return true;
@@ -147,9 +150,8 @@ std::vector<Sample> true_pixels(ImageSize size, const TileRefinement::Cast& cast
   std::vector<Sample> pixels;
   for (int y = 0; y < size.height; ++y)
     for (int x = 0; x < size.width; ++x) {
-      auto samples = samples_of(x, y, kFewEdge, cast);
-      if (!is_straight(samples)) samples = samples_of(x, y, kManyEdge, cast);
-      pixels.push_back(mean_of(samples));
+      const bool few = is_straight(samples_of(x, y, kFewEdge, 1, cast));
+      pixels.push_back(mean_of(samples_of(x, y, few ? kFewEdge : kManyEdge, 0, cast)));
     }
   return pixels;
 }

@@ -125,8 +125,7 @@ TEST(Seams, LargerTilesMakeAPictureAsGood) {
   for (const auto& [step, ratios] : found()) {
     const Paired log_ratio(ratios.small_to_large);
     print("error by tiles of 64 / of 128", step, log_ratio);
-    EXPECT_LE(std::abs(log_ratio.mean), log_ratio.half_width);
-    EXPECT_LE(log_ratio.half_width, 0.05) << "or nothing could be seen";
+    EXPECT_LE(std::abs(log_ratio.mean) + log_ratio.half_width, 0.1);
   }
 }
 
