@@ -158,6 +158,10 @@ void Cluster::begin_view(const Scene& scene, const ViewRequest& request) {
   costs_.fit(request.grid);
   scheduler_.begin_view(request.grid, costs_);
   view_ = {};
+  // What was told of the old view and not yet heard would be taken for the new one's.
+  std::erase_if(events_, [](const ClusterEvent& event) {
+    return std::holds_alternative<StepCast>(event) || std::holds_alternative<StepHeld>(event);
+  });
   ++epoch_.value;
   view_.epoch = epoch_;
   view_.grid = request.grid;
