@@ -55,11 +55,9 @@ std::optional<RefinedTile> refine_tile(const CastView& view, const RenderTile& q
     for (std::size_t first = 0; first < positions.size(); first += kBatchRays) {
       if (stale()) return false;
       const std::size_t count = std::min(kBatchRays, positions.size() - first);
-      const CastCounts counts =
-          view.source->cast(positions.subspan(first, count), samples.subspan(first, count),
-                            surfaces.subspan(first, count));
-      // Of steps taken again the picture holds nothing new: when it has enough must not depend on it.
-      if (tile->step() > quantum.from) result.counts += counts;
+      result.counts += view.source->cast(positions.subspan(first, count),
+                                         samples.subspan(first, count),
+                                         surfaces.subspan(first, count));
     }
     return true;
   };

@@ -110,6 +110,7 @@ void run_render(Cluster& cluster, const Options& options) {
         scene.volumes.front(), [&](double fraction) { progress.update(fraction); });
     log_volume(info);
     scene = resolve_scene(scene, info);
+    scene.step_mm = step_of(scene, info, stop_rule_of(options));
   }
   const double load_seconds = std::chrono::duration<double>(Clock::now() - begin).count();
   cluster.commit(scene);

@@ -4,6 +4,7 @@
 #include <spdlog/spdlog.h>
 
 #include "common/scene/scene_file.h"
+#include "worker/kernels/scene_terms.h"
 
 namespace goldthread {
 
@@ -21,6 +22,12 @@ TileGrid grid_of(const Options& options, ImageSize image) {
 
 StopRule stop_rule_of(const Options& options) {
   return {options.sampling, options.error, static_cast<std::uint32_t>(options.samples.value_or(0))};
+}
+
+double step_of(const Scene& scene, const VolumeInfo& info, const StopRule& rule) {
+  if (scene.step_mm > 0 || rule.sampling == Sampling::kEveryPixel) return scene.step_mm;
+  const Features features = features_of(scene.volumes.front(), scene.lights);
+  return step_for_error(rule.error, info.geometry, features);
 }
 
 void log_volume(const VolumeInfo& info) {

@@ -14,6 +14,9 @@ namespace goldthread {
 Scene scene_of(const Options& options);
 TileGrid grid_of(const Options& options, ImageSize image);
 StopRule stop_rule_of(const Options& options);
+/// The step of rays in mm where the scene leaves it open: as `rule` allows when only the finished
+/// picture counts. 0, the kernels' default, for pictures of every pixel.
+double step_of(const Scene& scene, const VolumeInfo& info, const StopRule& rule);
 /// What the user should know, one line each, to the log.
 void log_volume(const VolumeInfo& info);
 void log_lost_worker(Rank rank);

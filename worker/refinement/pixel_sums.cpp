@@ -15,9 +15,10 @@ constexpr double kEdgeGain = 0.45;
 /// of the pixel behind it, p its variance.
 constexpr double kUnmet = 0.5 / (kEdgeShare * kEdgeShare);
 
-/// What is smooth converges faster, the more so the smoother it is.
+/// What is smooth converges faster, the more so the smoother it is; what is thinner than a pixel
+/// slower.
 double gain_of(double squared_share) {
-  return kEdgeGain * std::min(1.0, std::pow(squared_share / (kEdgeShare * kEdgeShare), 0.75));
+  return kEdgeGain * std::min(2.0, std::pow(squared_share / (kEdgeShare * kEdgeShare), 0.75));
 }
 
 }  // namespace

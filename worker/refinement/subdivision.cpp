@@ -179,4 +179,23 @@ std::vector<Square> quarters(const TileLattice& lattice, std::span<const Square>
   return result;
 }
 
+std::vector<Square> with_next(const TileLattice& lattice, std::span<const Square> squares,
+                              int spacing) {
+  const int columns = lattice.columns() / spacing + 1, rows = lattice.rows() / spacing + 1;
+  std::vector<bool> there(static_cast<std::size_t>(columns * rows));
+  std::vector<Square> result;
+  const auto add = [&](int x, int y) {
+    const auto at = static_cast<std::size_t>(y / spacing * columns + x / spacing);
+    if (!lattice.is_pixel(x, y) || there[at]) return;
+    there[at] = true;
+    result.push_back({static_cast<std::uint16_t>(x), static_cast<std::uint16_t>(y)});
+  };
+  for (const Square square : squares) {
+    add(square.x, square.y);
+    add(square.x + spacing, square.y);
+    add(square.x, square.y + spacing);
+  }
+  return result;
+}
+
 }  // namespace goldthread

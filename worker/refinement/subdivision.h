@@ -40,4 +40,9 @@ void choose(TileLattice& lattice, std::span<const Square> squares, int spacing,
 /// The quarters of those squares in which something is known beyond their corners.
 std::vector<Square> quarters(const TileLattice& lattice, std::span<const Square> squares, int spacing);
 
+/// Those and the ones to their right and below, each once. A pixel lies in the square whose upper left
+/// corner it is or that it is inside of, but an edge just left of it or above runs through others.
+std::vector<Square> with_next(const TileLattice& lattice, std::span<const Square> squares,
+                              int spacing);
+
 }  // namespace goldthread

@@ -102,7 +102,7 @@ bool TileRefinement::subdivide(const StepPlan& plan, const Cast& cast) {
     choose(lattice_, squares, spacing, rule, surprises_, wanted_);
     if (!cast_places(wanted_, cast)) return false;
     squares = quarters(lattice_, squares, spacing);
-    if (spacing == 4) finest_ = squares;
+    if (spacing == 4) finest_ = with_next(lattice_, squares, 2);
   }
   surprises_.clear();
   return true;
@@ -132,6 +132,7 @@ bool TileRefinement::cast_orders(std::span<const PixelOrder> orders, const Cast&
       positions_.push_back(sample_position(task_.rect.x + order.place.x,
                                            task_.rect.y + order.place.y, number));
   if (!cast_positions(cast)) return false;
+  if (orders.empty()) return true;
   std::size_t at = 0;
   for (const PixelOrder& order : orders) {
     const std::size_t count = order.last - order.first;
@@ -140,6 +141,9 @@ bool TileRefinement::cast_orders(std::span<const PixelOrder> orders, const Cast&
     changed_.push_back(order.place);
     at += count;
   }
+  // A pixel whose centre was cast in this step, too, is there already.
+  std::sort(changed_.begin(), changed_.end());
+  changed_.erase(std::unique(changed_.begin(), changed_.end()), changed_.end());
   return true;
 }
 

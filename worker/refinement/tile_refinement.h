@@ -42,7 +42,7 @@ class TileRefinement {
   Step step() const { return step_; }
   const TileQuality& quality() const { return quality_; }
 
-  /// The places that the last step has changed; one may be there twice.
+  /// The places that the last step has changed, each once.
   std::span<const SampleOffset> changed() const { return changed_; }
   const Sample& sample(SampleOffset place) const { return lattice_.sample(place.x, place.y); }
   const TileLattice& lattice() const { return lattice_; }

@@ -21,6 +21,30 @@ inline MethodRow method_row(const char* program, Look look, double step, double 
   return row;
 }
 
+/// Adaptive refinement twice as fast as each goal asks for, with what it costs besides and how good
+/// its estimates are just as they should be.
+inline AdaptiveReport example_adaptive() {
+  AdaptiveReport adaptive;
+  adaptive.tile_px = 64;
+  for (const Look look : {Look::kUnlit, Look::kPhong})
+    for (const ImageSize size : {ImageSize{512, 512}, ImageSize{1024, 1024}}) {
+      adaptive.every_pixel.push_back({"VTK", look, size, 0.5, {0.9, 1, 9}, 2.4});
+      for (const double target : {2.4, 0.5}) {
+        const double median = target < 1 ? 0.02 : 0.0025;
+        AdaptiveRow row{look, size, target, 0.5, {0.9 * median, median, 9}};
+        row.cpu_seconds = 2 * median;
+        row.cast_seconds = 0.95 * row.cpu_seconds;
+        row.steps = 4;
+        row.rays = 10'000;
+        row.estimated = row.rms = 0.9 * target;
+        adaptive.rows.push_back(row);
+      }
+      adaptive.first_pictures.push_back({look, size, {0.007, 0.008, 9}, 8});
+    }
+  adaptive.calibration = {{Look::kUnlit, 3, 0.04, 2.2, 2}, {Look::kPhong, 4, 0.1, 0.9, 1}};
+  return adaptive;
+}
+
 /// Twice as fast as each goal asks for.
 inline Report example_report() {
   Report report;
@@ -61,6 +85,7 @@ inline Report example_report() {
   report.gathers = {{"AVX2", {0.01, 0.01, 9}, 4'400'000}};
   report.memory = {1000, 1200, 50};
   report.peers = {{"VTK", "9.1.0", ""}, {"ParaView", "", "pvbatch is not installed"}};
+  report.adaptive = example_adaptive();
   return report;
 }
 

@@ -24,7 +24,7 @@ std::string script(const Report& report, const std::string& name) {
 
 TEST(BenchPlots, EachPlotIsDrawnAsSvgAndAsPng) {
   const auto plots = plots_of(test::example_report());
-  ASSERT_EQ(plots.size(), 3u);
+  ASSERT_EQ(plots.size(), 5u);
   for (const Plot& plot : plots) {
     EXPECT_THAT(plot.script, HasSubstr("set output '" + plot.name + ".svg'"));
     EXPECT_THAT(plot.script, HasSubstr("set output '" + plot.name + ".png'"));

@@ -43,6 +43,18 @@ TEST(BenchReport, AGoalMissedIsNamedWithItsNumber) {
   EXPECT_EQ(unmet(report).size(), 2u);
 }
 
+TEST(BenchReport, AdaptiveRefinementMustBeCheapAndHonest) {
+  Report report = test::example_report();
+  report.adaptive.rows.front().cast_seconds = 0.85 * report.adaptive.rows.front().cpu_seconds;
+  EXPECT_EQ(unmet(report).size(), 1u);
+  report.adaptive.rows.back().rms = 1.3 * report.adaptive.rows.back().target;
+  EXPECT_EQ(unmet(report).size(), 2u);
+  report.adaptive.calibration.front().estimated = 0.6 * report.adaptive.calibration.front().rms;
+  EXPECT_EQ(unmet(report).size(), 3u);
+  report.adaptive.first_pictures.back().seconds.median = 0.02;
+  EXPECT_EQ(unmet(report).size(), 4u);
+}
+
 TEST(BenchReport, WhatIsOffMayCostOnePercent) {
   Report report = test::example_report();
   report.features.back().by_rounds = 0.985;
@@ -53,9 +65,10 @@ TEST(BenchReport, GoalsAgainstAMissingPeerAreNotMeasured) {
   Report report = test::example_report();
   report.latencies.clear();
   std::erase_if(report.methods, [](const MethodRow& row) { return row.program == "VTK"; });
+  report.adaptive.every_pixel.clear();
   int open = 0;
   for (const Goal& goal : goals_of(report)) open += !goal.met;
-  EXPECT_EQ(open, 6);
+  EXPECT_EQ(open, 12);
   EXPECT_THAT(report_text(report), HasSubstr("not measured"));
 }
 

@@ -41,7 +41,7 @@ TEST_F(PostTest, CountsMessagesAndBytesByKind) {
   ASSERT_EQ(counts.size(), 2u);
   EXPECT_EQ(counts[0].kind, "CollectBand");
   EXPECT_EQ(counts[0].messages, 1u);
-  EXPECT_EQ(counts[0].bytes, 5u);
+  EXPECT_EQ(counts[0].bytes, 6u);
   EXPECT_EQ(counts[1].kind, "CommitScene");
   EXPECT_EQ(counts[1].messages, 2u);
   EXPECT_EQ(counts[1].bytes, bytes);

@@ -137,5 +137,26 @@ TEST(Step, DefaultsToAShareOfTheSmallestSpacingAndNeverNeedsTooManySegments) {
   EXPECT_GT(step_of(1e-30, geometry, unlit), 1e-4);
 }
 
+TEST(Step, FollowsTheErrorThatAPictureMayHave) {
+  const VolumeGeometry geometry{.size = {100, 100, 100}, .spacing_mm = {1, 2, 0.5}};
+  const Features unlit{.dvr = true}, lit{.dvr = true, .shading = true}, mip{.mip = true};
+  const Features surfaces{.shading = true, .isosurfaces = true};
+  // Where a quarter of the error is what the step alone causes.
+  EXPECT_DOUBLE_EQ(step_for_error(4 * 0.17, geometry, unlit), 0.5);
+  EXPECT_DOUBLE_EQ(step_for_error(4 * 0.17, geometry, mip), 0.5);
+  EXPECT_DOUBLE_EQ(step_for_error(4 * 1.58, geometry, lit), 0.5);
+  for (const Features& features : {unlit, lit, mip, surfaces}) {
+    double last = step_of(0, geometry, features);
+    EXPECT_DOUBLE_EQ(step_for_error(0.01, geometry, features), last);
+    for (double error = 0.1; error < 255; error *= 1.5) {
+      const double step = step_for_error(error, geometry, features);
+      EXPECT_GE(step, last);
+      last = step;
+    }
+    EXPECT_LE(last, 1);
+  }
+  EXPECT_DOUBLE_EQ(step_for_error(255, geometry, surfaces), step_of(0, geometry, surfaces));
+}
+
 }  // namespace
 }  // namespace goldthread::test

@@ -10,9 +10,10 @@ namespace goldthread::test {
 namespace {
 
 constexpr int kFewEdge = 4;
-constexpr int kManyEdge = 32;
-/// A second difference of a channel, within a pixel: more than that is sampled further.
-constexpr double kStraight = 0.25 / 255;
+constexpr int kManyEdge = 24;
+/// A second difference of a channel: more than that is sampled further. The mean of 4×4 samples is
+/// off by a 24th of it for each axis.
+constexpr double kStraight = 1.0 / 255;
 
 /// The samples of a regular grid of edge × edge in a pixel, and `beyond` more on each side.
 std::vector<Sample> samples_of(int x, int y, int edge, int beyond,

@@ -64,7 +64,7 @@ class RefinedPicture {
   std::vector<TileRefinement> tiles_;
 };
 
-/// The true pixels: 4×4 samples in each, 32×32 where those bend.
+/// The true pixels: 4×4 samples in each, 24×24 where those bend.
 std::vector<Sample> true_pixels(ImageSize size, const TileRefinement::Cast& cast);
 
 /// Mean over the channels of the squared difference of two opaque pixels.

@@ -161,6 +161,23 @@ TEST(TileRefinement, ALinearPictureIsReconstructedExactlyFromTheFineGrid) {
   EXPECT_LT(255 * std::sqrt(picture.estimated_squared_error() / (128 * 128)), 1e-3);
 }
 
+TEST(TileRefinement, APixelIsSampledFurtherWhicheverSquareTheEdgeThroughItIsIn) {
+  // The edge leaves the pixel's centre on one side: the pixel must be told of by its neighbour,
+  // which may be in another square of samples.
+  for (int at = 1; at < 63; ++at)
+    for (const bool down : {false, true}) {
+      TileRefinement tile({{0, 0, 64, 64}, {}, {}, false});
+      const auto edge = cast_of(
+          [&](PixelPosition p) { return grey(double(down ? p.y : p.x) < at + 0.3 ? 0.2 : 0.8); });
+      while (tile.step() < Step{9}) tile.advance(edge);
+      const auto pixels = pixels_of(tile);
+      for (int i = 0; i < 64; ++i) {
+        const int x = down ? i : at, y = down ? at : i;
+        EXPECT_NEAR(pixels[std::size_t(y * 64 + x)].red, 0.62F, 0.06F) << x << ", " << y;
+      }
+    }
+}
+
 TEST(TileRefinement, GoesOnToTheLastStep) {
   TileRefinement tile({{0, 0, 16, 16}, {Sampling::kAdaptive, 16}, {}, false});
   while (tile.step() < kLastStep) ASSERT_TRUE(tile.advance(cast_motley));
