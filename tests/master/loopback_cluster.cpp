@@ -9,6 +9,7 @@
 #include <string>
 
 #include "common/scene/resolve.h"
+#include "common/scene/scene_file.h"
 #include "compositor/compositor_role.h"
 
 namespace goldthread::test {
@@ -29,15 +30,12 @@ std::string ball() {
 }
 
 Scene scene_of(const std::filesystem::path& file, ImageSize image) {
-  SceneVolume volume;
-  volume.name = "ball";
-  volume.file = file;
-  volume.transfer_function.emplace();
-  volume.transfer_function->color = {{0, {0.1, 0.2, 0.8}}, {127, {1, 0.9, 0.3}}};
-  volume.transfer_function->opacity = {{0, 0}, {20, 0}, {127, 0.6}};
-  Scene scene;
+  constexpr const char* kScene = R"({ "goldthread": 1, "volumes": [ { "name": "ball", "file": ")";
+  constexpr const char* kLook = R"(", "mode": "dvr", "transferFunction": {
+    "color": [ [0, 0.1, 0.2, 0.8], [127, 1, 0.9, 0.3] ],
+    "opacity": [ [0, 0], [20, 0], [127, 0.6] ] } } ] })";
+  Scene scene = value_or_throw(parse_scene(kScene + file.string() + kLook, "the ball", {}));
   scene.image.size = image;
-  scene.volumes = {volume};
   return scene;
 }
 
