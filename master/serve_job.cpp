@@ -64,8 +64,15 @@ void ServeJob::load() {
   });
   request_.loaded(volume_);
   scene_ = request_.resolve(scene_, volume_);
-  cluster_.commit(scene_);
+  commit();
   say_welcome();
+}
+
+/// With the step that the error target chooses where the scene leaves it open, as pages see it.
+void ServeJob::commit() {
+  Scene scene = scene_;
+  scene.step_mm = request_.step_mm(scene_, volume_);
+  cluster_.commit(scene);
 }
 
 void ServeJob::say_welcome() {
@@ -233,7 +240,7 @@ void ServeJob::advance_cine() {
 }
 
 void ServeJob::begin_view() {
-  if (waiting_.scene) cluster_.commit(scene_);
+  if (waiting_.scene) commit();
   waiting_ = {};
   cine_.reset();
   to_pages(Broadcast{view_message(*scene_.camera, scene_.image.size)});
@@ -249,11 +256,8 @@ void ServeJob::cast(const Camera& camera) {
   Scene scene = scene_;
   scene.camera = camera;
   update_ = is_moving() && cine_.idle() ? request_.display.update : Update::kAll;
-  // From a crude picture on: what is watched becomes better step by step.
-  Refinement refinement = refinement_of(request_.stop);
-  refinement.first_threshold = Refinement{}.first_threshold;
-  cluster_.begin_view(scene,
-                      {request_.grid(scene_.image.size), refinement, update_, moving_frame_++});
+  cluster_.begin_view(scene, {request_.grid(scene_.image.size), refinement_of(request_.stop),
+                              update_, moving_frame_++});
   back_.epoch = cluster_.view().epoch;
   if (update_ == Update::kAll) return;
   parts_.push_back(back_);

@@ -26,6 +26,8 @@ struct ServeRequest {
   std::function<TileGrid(ImageSize)> grid;
   /// The scene with everything chosen that it leaves open.
   std::function<Scene(const Scene&, const VolumeInfo&)> resolve;
+  /// The step of its rays, mm.
+  std::function<double(const Scene&, const VolumeInfo&)> step_mm;
   std::function<void(std::uint16_t port)> opened = [](std::uint16_t) {};
   std::function<void(double fraction)> progress = [](double) {};
   std::function<void(const VolumeInfo&)> loaded = [](const VolumeInfo&) {};
@@ -84,6 +86,7 @@ class ServeJob {
   double spatial_px() const;
   std::vector<ViewMovement> movements() const;
   void to_pages(ToCompositor message);
+  void commit();
   void say_welcome();
 
   Cluster& cluster_;

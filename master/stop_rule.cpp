@@ -8,10 +8,6 @@ namespace goldthread {
 
 Refinement refinement_of(const StopRule& rule) {
   Refinement refinement;
-  // Measured: where it is 34 times the error, few pictures are better than wanted at once.
-  const double threshold = 34 * std::pow(rule.error / 0.5, 1.0 / 3) * rule.error / 255;
-  refinement.first_threshold =
-      std::min(refinement.first_threshold, static_cast<float>(threshold));
   refinement.sampling = rule.sampling;
   if (rule.samples > 0) refinement.most_samples = rule.samples;
   return refinement;

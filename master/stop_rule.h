@@ -16,7 +16,7 @@ struct StopRule {
   std::uint32_t samples = 0;  ///< per pixel; 0: no limit but for every-pixel, which takes one
 };
 
-/// How the workers are to refine under that rule when only the finished picture counts.
+/// How the workers are to refine under that rule.
 Refinement refinement_of(const StopRule& rule);
 
 /// The RMS error in 1/255 that a sum of squares over `pixels` pixels means.

@@ -61,13 +61,9 @@ constexpr Step kLastStep{200};  ///< far beyond what a lifetime computes
 struct Refinement {
   Sampling sampling = Sampling::kAdaptive;
   std::uint32_t most_samples = 1U << 20;  ///< in one pixel
-  /// Of displayed colours, 0 … 1: how much neighbours must differ at the first adaptive step. A
-  /// picture that is wanted at once with a small error need not begin with a great one.
-  float first_threshold = 136.0F / 255;
   bool operator==(const Refinement&) const = default;
   static constexpr auto fields() {
-    return std::tuple{&Refinement::sampling, &Refinement::most_samples,
-                      &Refinement::first_threshold};
+    return std::tuple{&Refinement::sampling, &Refinement::most_samples};
   }
 };
 

@@ -45,6 +45,9 @@ void run_serve(Cluster& cluster, const Options& options) {
   request.stop = stop_rule_of(options);
   request.display = {options.filter, options.update, false};
   request.resolve = resolve_scene;
+  request.step_mm = [stop = request.stop](const Scene& s, const VolumeInfo& info) {
+    return step_of(s, info, stop);
+  };
   request.ended = interrupted;
   request.worker_lost = log_lost_worker;
   request.opened = [&](std::uint16_t port) {

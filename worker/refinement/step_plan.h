@@ -25,6 +25,6 @@ struct StepPlan {
   std::uint32_t even_samples = 1;  ///< in each pixel, for Sampling::kEveryPixel
 };
 
-StepPlan plan_of(Step step, const Refinement& how);
+StepPlan plan_of(Step step);
 
 }  // namespace goldthread

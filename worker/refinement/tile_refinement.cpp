@@ -39,7 +39,7 @@ bool TileRefinement::advance(const Cast& cast) {
   step_ = step_.next();
   lattice_.forget_filled();
   if (step_ < kFirstAdaptiveStep) return advance_coarsely(cast);
-  const StepPlan plan = plan_of(step_, task_.how);
+  const StepPlan plan = plan_of(step_);
   const bool even = task_.how.sampling == Sampling::kEveryPixel;
   if (!(even ? advance_evenly(plan, cast) : advance_adaptively(plan, cast))) return false;
   return true;

@@ -25,7 +25,7 @@ constexpr int kPlacements = 2000;
 Step step_of_probes(int count) {
   int probes = 0;
   for (Step step = kFirstAdaptiveStep;; step = step.next()) {
-    probes += plan_of(step, {}).probes;
+    probes += plan_of(step).probes;
     if (probes >= count) return step;
   }
 }

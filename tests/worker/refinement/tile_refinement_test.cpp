@@ -146,7 +146,7 @@ TEST(TileRefinement, AConstantPictureTakesTheGridAndTheProbesAndHasNoError) {
     const ImageSize size = lattice.tile();
     most += int(grid_places(size, 8).size());
     for (Step step = kFirstAdaptiveStep; step <= kTwelve; step = step.next())
-      most += plan_of(step, {}).probes * ((size.width + 15) / 16) * ((size.height + 15) / 16);
+      most += plan_of(step).probes * ((size.width + 15) / 16) * ((size.height + 15) / 16);
   }
   EXPECT_LE(known, most);
 }
