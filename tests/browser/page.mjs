@@ -54,6 +54,16 @@ export class SessionPage {
     }
   }
 
+  /** The picture at rest, and the state that belongs to it: it becomes better for ever. */
+  async atRest() {
+    for (;;) {
+      const before = await this.rest();
+      const picture = await this.picture();
+      const state = await this.state();
+      if (state.picture.picture === before.picture.picture) return { state, picture };
+    }
+  }
+
   /** At rest: the picture is final and answers every input of this page that was not refused. */
   rest() {
     return this.until('a final picture', ({ connection, picture, unanswered }) =>

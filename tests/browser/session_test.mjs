@@ -19,27 +19,30 @@ if (absent) {
 
 const mpi = process.argv[2] === 'mpi';
 const kSize = '256x256';
+// Else it would depend on the error that is asked for.
+const kStep = ['--step', '0.5'];
 
 async function serve(scene, options = []) {
-  const args = ['serve', scene, '--port', '0', ...options];
+  const args = ['serve', scene, '--port', '0', ...kStep, ...options];
   const session = mpi ? startRanks(3, args, { seconds: 280 }) : start(args, { seconds: 280 });
   await session.until(() => /http:\S+\n/.test(session.stdout));
   return Object.assign(session, { url: session.stdout.match(/http:\S+/)[0] });
 }
 
 let offlineCount = 0;
-/** What `goldthread render` makes of what the page says it shows. */
+/** What `goldthread render` makes of what the page says it shows, refined as far. */
 async function offline(state) {
   const name = `offline-${++offlineCount}`;
   const scene = writeJson(`${name}.json`, sceneOfState(state, headVolume));
-  const made = await run(['render', scene, '-o', inScratch(`${name}.png`), '--size', `${state.size.width}x${state.size.height}`]);
+  const made = await run(['render', scene, '-o', inScratch(`${name}.png`), ...kStep,
+    '--size', `${state.size.width}x${state.size.height}`, '--error', String(1.000001 * state.picture.estimatedError)]);
   assert.equal(made.status, 0, made.stderr);
   return readPng(inScratch(`${name}.png`));
 }
 
 async function expectOffline(page) {
-  const state = await page.rest();
-  assert.deepEqual(difference(await page.picture(), await offline(state)), { pixels: 0, greatest: 0, mean: 0 });
+  const { state, picture } = await page.atRest();
+  assert.deepEqual(difference(picture, await offline(state)), { pixels: 0, greatest: 0, mean: 0 });
   return state;
 }
 
@@ -60,10 +63,6 @@ test('The page shows the head of the scene file', async () => {
   const picture = await page.picture();
   assert.equal(`${picture.width}x${picture.height}`, kSize);
   assert.ok(covered(picture) > 0.2, `${covered(picture)}`);
-  const output = inScratch('head.png');
-  const made = await run(['render', headScene, '-o', output, '--size', kSize]);
-  assert.equal(made.status, 0, made.stderr);
-  assert.equal(difference(picture, readPng(output)).pixels, 0);
   await expectOffline(page);
 });
 
@@ -113,6 +112,7 @@ if (!mpi) {
 
   test('It rocks at rest on wish, until something is done', async () => {
     await page.rest();
+    await page.page.locator('canvas').focus();  // in a field of the panel a key would be text
     await page.page.keyboard.press('c');
     const { cine, display } = await page.until('the loop plays', (state) => state.cine.playing, 120);
     assert.equal(cine.frames, 7);
@@ -131,12 +131,12 @@ if (!mpi) {
     const watching = await second.rest();
     assert.equal(watching.drives, false);
     assert.equal(watching.viewers, 2);
-    assert.equal(difference(await second.picture(), await page.picture()).pixels, 0);
+    await expectOffline(second);
     await page.drag(3, 10, 0);
     const turned = await page.rest();
     await second.until('the driver\'s camera', ({ camera, picture }) =>
       picture?.final && camera.position[0] === turned.camera.position[0]);
-    assert.equal(difference(await second.picture(), await page.picture()).pixels, 0);
+    await expectOffline(second);
 
     await second.page.getByRole('button', { name: 'Take over' }).click();
     await second.until('it drives', ({ drives }) => drives);
