@@ -38,8 +38,7 @@ bool AgedBand::place(const Samples& message) {
     return false;
   const std::size_t tile = message.tile.value - first;
   std::vector<Sample> samples(message.count);
-  if (!samples.empty())
-    std::memcpy(samples.data(), message.packed.data(), message.packed.size());
+  if (!samples.empty()) std::memcpy(samples.data(), message.packed.data(), message.packed.size());
   if (!tiles_[tile].put(message.epoch, part_, samples)) return false;
   if (placed_[tile] != epoch_) --missing_;
   placed_[tile] = epoch_;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// From samples to pixels: what no ray was cast for is filled from the coarser samples around, all of
-// it put over the background, and filtered to another size where one is asked for. Pure. A pixel
+// From samples to pixels: what no ray was cast for is filled from the coarser samples around, all
+// of it put over the background, and filtered to another size where one is asked for. Pure. A pixel
 // with a ray of its own gets exactly that, so that a picture of every pixel holds the rays' results
 // and nothing else.
 
@@ -19,7 +19,8 @@ namespace goldthread {
 std::vector<float> reconstruct(const SampleArray& samples, Filter filter,
                                const glm::dvec3& background);
 
-/// Puts samples, `stride` in a row, over the background into the pixels of `rect` of a band's picture.
+/// Puts samples, `stride` in a row, over the background into the pixels of `rect` of a band's
+/// picture.
 void write_over(std::span<const Sample> samples, int stride, const PixelRect& rect,
                 const glm::dvec3& background, const PixelRect& band, std::span<float> pixels);
 

@@ -54,8 +54,8 @@ struct RankState {
 /// What a picture was worth after a step: sums over its pixels, as TileQuality.
 struct StepState {
   TileQuality quality;
-  std::uint64_t rays = 0;     ///< since the view began
-  std::uint64_t samples = 0;  ///< field evaluations, likewise
+  std::uint64_t rays = 0;                 ///< since the view began
+  std::uint64_t samples = 0;              ///< field evaluations, likewise
   std::chrono::duration<double> held{0};  ///< from the view's begin until the compositors had it
 };
 
@@ -68,7 +68,7 @@ struct ViewState {
   Step held = kNoStep;           ///< the compositors hold all of it
   std::uint64_t rays = 0;
   std::uint64_t samples = 0;
-  int workers_begun = 0;  ///< have begun to cast it
+  int workers_begun = 0;                   ///< have begun to cast it
   std::chrono::duration<double> taken{0};  ///< from its begin until the last of them had said so
   struct Tile {
     Rank worker;

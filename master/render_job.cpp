@@ -55,7 +55,8 @@ void cast_view(Cluster& cluster, const RenderRequest& request) {
 void collect(Cluster& cluster, const RenderRequest& request, RenderedFrame& frame) {
   const Topology& topology = cluster.topology();
   for (int c = 0; c < topology.compositors; ++c) {
-    cluster.post().to_compositor(topology.compositor(c), CollectBand{cluster.view().epoch, request.filter});
+    cluster.post().to_compositor(topology.compositor(c),
+                                 CollectBand{cluster.view().epoch, request.filter});
   }
   const auto width = static_cast<std::size_t>(frame.size.width);
   for (int open = topology.compositors; open > 0;) {

@@ -48,8 +48,7 @@ void Scheduler::queue(const CostHistory& costs) {
     tile.cost_us = costs.predict_us({i}, step_);
     tile.all_cost_us = costs.predict_all_us({i}, step_);
     // Errors are sums over the tile: its area is in them.
-    urgency[i] =
-        step_ == Step{1} ? tile.cost_us : tile.squared_error / std::max(tile.cost_us, 1.0);
+    urgency[i] = step_ == Step{1} ? tile.cost_us : tile.squared_error / std::max(tile.cost_us, 1.0);
   }
   std::vector<std::uint32_t> order(tiles_.size());
   std::iota(order.begin(), order.end(), 0U);

@@ -3,9 +3,9 @@
 // Who casts which tile next. All tiles take a step before any takes the next, so that what a
 // picture holds after a step depends on nobody's speed. Within a step the order is: at the first
 // step of a view descending predicted cost (longest first), after that descending (estimated error
-// × area) / predicted cost. A tile stays with the worker that holds its state; a worker with nothing
-// left takes over another's where casting the earlier steps again is quicker than waiting. Pure: no
-// clock, no transport. Invariant: each (tile, step) of a view is counted as done once.
+// × area) / predicted cost. A tile stays with the worker that holds its state; a worker with
+// nothing left takes over another's where casting the earlier steps again is quicker than waiting.
+// Pure: no clock, no transport. Invariant: each (tile, step) of a view is counted as done once.
 
 #include <cstdint>
 #include <deque>

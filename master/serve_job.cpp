@@ -76,8 +76,7 @@ void ServeJob::commit() {
 }
 
 void ServeJob::say_welcome() {
-  to_pages(Welcome{
-      welcome_message(scene_, volume_, request_.size.has_value(), request_.display)});
+  to_pages(Welcome{welcome_message(scene_, volume_, request_.size.has_value(), request_.display)});
 }
 
 /// The golden thread: the step that is repeated for ever. It waits where the picture is to be shown
@@ -108,9 +107,7 @@ void ServeJob::note_input(std::uint32_t viewer, std::uint32_t serial) {
   last_input_ = Clock::now();
 }
 
-void ServeJob::want_view(bool scene) {
-  waiting_ = {true, waiting_.scene || scene};
-}
+void ServeJob::want_view(bool scene) { waiting_ = {true, waiting_.scene || scene}; }
 
 void ServeJob::on(const ViewerCamera& event) {
   if (camera_fault(event.camera).any())
@@ -322,8 +319,8 @@ void ServeJob::tell_status() {
   pulse_.phase = phase();
   pulse_.target_error = request_.stop.error;
   pulse_.spatial_px = spatial_px();
-  pulse_.temporal_px = temporal_error_px(cluster_.visible_points(), back_.camera, *scene_.camera,
-                                         scene_.image.size);
+  pulse_.temporal_px =
+      temporal_error_px(cluster_.visible_points(), back_.camera, *scene_.camera, scene_.image.size);
   pulse_.seconds = 1e-6 * static_cast<double>(passed.count());
   to_pages(Broadcast{status_message(cluster_, pulse_)});
   pulse_.busy_before.clear();

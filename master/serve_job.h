@@ -21,7 +21,7 @@ struct ServeRequest {
   std::uint16_t port = 0;
   std::string token;
   std::optional<ImageSize> size;  ///< fixed by the user; else the page may choose
-  StopRule stop;  ///< when a picture is good enough to be shown without loss
+  StopRule stop;                  ///< when a picture is good enough to be shown without loss
   DisplaySettings display;
   std::function<TileGrid(ImageSize)> grid;
   /// The scene with everything chosen that it leaves open.
@@ -105,9 +105,9 @@ class ServeJob {
   Shown back_;                  ///< what the view being cast shows
   std::optional<Shown> front_;  ///< what the pages show
   std::optional<double> final_error_;
-  Update update_ = Update::kAll;        ///< of the view being cast
-  std::deque<Shown> parts_;             ///< views whose samples an update keeps, the newest last
-  bool paused_ = false;  ///< the next step is opened once the picture has been shown
+  Update update_ = Update::kAll;  ///< of the view being cast
+  std::deque<Shown> parts_;       ///< views whose samples an update keeps, the newest last
+  bool paused_ = false;           ///< the next step is opened once the picture has been shown
   bool audience_ready_ = false;
   bool reshow_ = false;  ///< the same samples are wanted in another form
   std::uint32_t moving_frame_ = 0;

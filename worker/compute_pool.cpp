@@ -112,10 +112,10 @@ void ComputePool::cast(const CastView& view, const RenderTile& quantum,
     const std::lock_guard lock(mutex_);
     if (quantum.epoch != view_->epoch) return;
     if (result->tile) tiles_.put(quantum.tile, std::move(result->tile));
-    outbox_.push_back({std::move(result->samples),
-                       {quantum.epoch, quantum.tile, quantum.to,
-                        static_cast<std::uint32_t>(cost_us), result->counts.rays,
-                        result->counts.samples, result->quality}});
+    outbox_.push_back(
+        {std::move(result->samples),
+         {quantum.epoch, quantum.tile, quantum.to, static_cast<std::uint32_t>(cost_us),
+          result->counts.rays, result->counts.samples, result->quality}});
   }
   notify_();
 }

@@ -49,8 +49,8 @@ class ComputePool {
  private:
   void work(const std::stop_token& stop);
   void note_failure();
-  void cast(const CastView& view, const RenderTile& quantum,
-            std::unique_ptr<TileRefinement> tile, const std::stop_token& stop);
+  void cast(const CastView& view, const RenderTile& quantum, std::unique_ptr<TileRefinement> tile,
+            const std::stop_token& stop);
 
   std::function<void()> notify_;
   mutable std::mutex mutex_;

@@ -148,10 +148,10 @@ std::vector<glm::dvec3> visible_points(const CommittedScene& scene, std::size_t 
   for (std::size_t i = 0; i < is_visible.size(); ++i) {
     if (any && !is_visible[i]) continue;
     const int cell = static_cast<int>(i);
-    const glm::dvec3 place(cell % counts.x, cell / counts.x % counts.y,
-                           cell / counts.x / counts.y);
+    const glm::dvec3 place(cell % counts.x, cell / counts.x % counts.y, cell / counts.x / counts.y);
     const glm::dvec3 last(geometry.size - 1);
-    all.push_back(world_from_index * glm::dvec4(glm::min(double(kCellEdge) * (place + 0.5), last), 1));
+    all.push_back(world_from_index *
+                  glm::dvec4(glm::min(double(kCellEdge) * (place + 0.5), last), 1));
   }
   std::vector<glm::dvec3> chosen;
   const std::size_t count = std::min(most, all.size());

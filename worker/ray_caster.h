@@ -25,8 +25,8 @@ std::shared_ptr<const CommittedScene> commit_scene(const Scene& scene,
 std::vector<std::string> feature_names(const CommittedScene& scene);
 std::string kernel_name(const CommittedScene& scene);
 
-/// At most `most` places that the scene may show, in the world, mm: the middles of cells that are not
-/// empty, evenly chosen; of all cells where none is known to be visible.
+/// At most `most` places that the scene may show, in the world, mm: the middles of cells that are
+/// not empty, evenly chosen; of all cells where none is known to be visible.
 std::vector<glm::dvec3> visible_points(const CommittedScene& scene, std::size_t most);
 
 /// The ray caster for one view. Cheap: commit once, look often.

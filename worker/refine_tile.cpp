@@ -17,7 +17,10 @@ TileTask task_of(const CastView& view, TileId tile) {
 /// Colours, then places, packed, with what the tile holds there now.
 Samples pack(const TileRefinement& tile, const RenderTile& quantum,
              std::span<const SampleOffset> places) {
-  Samples message{quantum.epoch, quantum.tile, quantum.from, quantum.to,
+  Samples message{quantum.epoch,
+                  quantum.tile,
+                  quantum.from,
+                  quantum.to,
                   static_cast<std::uint32_t>(places.size()),
                   Buffer(places.size() * (sizeof(Sample) + sizeof(SampleOffset)))};
   std::byte* const colors = message.packed.data();
@@ -33,10 +36,12 @@ Samples pack(const TileRefinement& tile, const RenderTile& quantum,
 bool cast_part(const CastView& view, const RenderTile& quantum, const TileRefinement::Cast& cast,
                Samples& message) {
   std::vector<PixelPosition> positions;
-  for (const UpdatePlace& place :
-       places_of(view.grid.rect(quantum.tile), view.update, view.part))
+  for (const UpdatePlace& place : places_of(view.grid.rect(quantum.tile), view.update, view.part))
     positions.push_back(place.position);
-  message = {quantum.epoch, quantum.tile, quantum.from, quantum.to,
+  message = {quantum.epoch,
+             quantum.tile,
+             quantum.from,
+             quantum.to,
              static_cast<std::uint32_t>(positions.size()),
              Buffer(positions.size() * sizeof(Sample))};
   std::vector<std::uint32_t> surfaces(positions.size());
@@ -55,9 +60,9 @@ std::optional<RefinedTile> refine_tile(const CastView& view, const RenderTile& q
     for (std::size_t first = 0; first < positions.size(); first += kBatchRays) {
       if (stale()) return false;
       const std::size_t count = std::min(kBatchRays, positions.size() - first);
-      result.counts += view.source->cast(positions.subspan(first, count),
-                                         samples.subspan(first, count),
-                                         surfaces.subspan(first, count));
+      result.counts +=
+          view.source->cast(positions.subspan(first, count), samples.subspan(first, count),
+                            surfaces.subspan(first, count));
     }
     return true;
   };

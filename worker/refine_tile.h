@@ -18,14 +18,14 @@ namespace goldthread {
 constexpr std::size_t kBatchRays = 512;
 
 struct RefinedTile {
-  Samples samples;  ///< what the quantum changed, ready to be sent
+  Samples samples;    ///< what the quantum changed, ready to be sent
   CastCounts counts;  ///< of the quantum's own steps
   TileQuality quality;
   std::unique_ptr<TileRefinement> tile;  ///< to go on with; null if there is nothing to keep
 };
 
-/// Takes a tile to quantum.to. `tile` is what this worker holds of it, or null: then, and if it does
-/// not stand at quantum.from, its steps are taken again from the first, with the same results.
+/// Takes a tile to quantum.to. `tile` is what this worker holds of it, or null: then, and if it
+/// does not stand at quantum.from, its steps are taken again from the first, with the same results.
 /// Nothing if `stale` became true.
 std::optional<RefinedTile> refine_tile(const CastView& view, const RenderTile& quantum,
                                        std::unique_ptr<TileRefinement> tile,

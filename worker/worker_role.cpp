@@ -122,12 +122,9 @@ void WorkerRole::on(const BeginView& message) {
           "was given a view it cannot cast");
   view_ = message;
   pool_->begin_view(std::make_shared<const CastView>(
-      CastView{message.epoch,
-               message.grid,
-               message.refinement,
+      CastView{message.epoch, message.grid, message.refinement,
                appearance_of(message.background, message.color_space),
-               make_source_(scene_, message.camera, message.grid.image),
-               message.update,
+               make_source_(scene_, message.camera, message.grid.image), message.update,
                message.frame % parts_of(message.update)}));
 }
 

@@ -312,9 +312,7 @@ struct Samples {
 struct ViewMovement {
   Epoch epoch;
   float pixels = 0;
-  static constexpr auto fields() {
-    return std::tuple{&ViewMovement::epoch, &ViewMovement::pixels};
-  }
+  static constexpr auto fields() { return std::tuple{&ViewMovement::epoch, &ViewMovement::pixels}; }
 };
 /// Encode the band as it is and send it to the gateway as part of `picture`.
 struct Present {
@@ -326,9 +324,9 @@ struct Present {
   ImageSize size;  ///< of the picture; the samples' own, or another one to filter them to
   bool lossless = false;
   bool final = false;
-  std::uint8_t cine_frame = 0;   ///< 1 … cine_frames: a frame of the cine loop
-  std::uint8_t cine_frames = 0;  ///< 0: no cine loop
-  float estimated_error = -1;    ///< RMS in 1/255; negative: unknown
+  std::uint8_t cine_frame = 0;      ///< 1 … cine_frames: a frame of the cine loop
+  std::uint8_t cine_frames = 0;     ///< 0: no cine loop
+  float estimated_error = -1;       ///< RMS in 1/255; negative: unknown
   std::vector<ViewMovement> moved;  ///< of the views whose samples an update keeps
   GOLDTHREAD_MESSAGE(Present, &Present::epoch, &Present::picture, &Present::viewer,
                      &Present::serial, &Present::filter, &Present::size, &Present::lossless,

@@ -18,13 +18,7 @@ enum class Sampling : std::uint8_t {
 };
 
 /// How pixels come from samples.
-enum class Filter : std::uint8_t {
-  kBox,
-  kBilinear,
-  kBiquadratic,
-  kPiecewiseQuadratic,
-  kBicubic
-};
+enum class Filter : std::uint8_t { kBox, kBilinear, kBiquadratic, kPiecewiseQuadratic, kBicubic };
 
 /// What of a moving picture is cast anew for each displayed frame; the rest is of older views.
 enum class Update : std::uint8_t {

@@ -48,9 +48,10 @@ struct TileGrid {
   static TileGrid rows_of(ImageSize image);
 };
 
-/// The places of a regular grid of samples in a tile of `size` pixels, each once, in blocks of 4×4 for
-/// the sake of coherent packets. Above the pixel (`spacing` > 1) they include the replicated column
-/// and row at or beyond the right and lower edges, so that each tile can be reconstructed alone.
+/// The places of a regular grid of samples in a tile of `size` pixels, each once, in blocks of 4×4
+/// for the sake of coherent packets. Above the pixel (`spacing` > 1) they include the replicated
+/// column and row at or beyond the right and lower edges, so that each tile can be reconstructed
+/// alone.
 std::vector<SampleOffset> grid_places(ImageSize size, int spacing);
 
 /// The centre of the pixel that a sample stands for.

@@ -212,7 +212,7 @@ if (!mpi) {
     await session.ended;
     await page.until('the loss', ({ connection }) => connection === 'lost');
     assert.ok(await page.page.getByText('Connection lost').isVisible());
-    session = start(['serve', headScene, '--size', kSize, '--port', port, '--token', searchParams.get('token')],
+    session = start(['serve', headScene, ...kStep, '--size', kSize, '--port', port, '--token', searchParams.get('token')],
                     { seconds: 200 });
     await page.until('the connection', ({ connection }) => connection === 'open');
     await expectOffline(page);

@@ -18,7 +18,11 @@ constexpr Band kAll{0, 1};
 Samples part(Epoch epoch, std::uint32_t tile, Update update, std::uint32_t number, float grey) {
   const std::size_t count = places_of(kGrid.rect({tile}), update, number).size();
   const std::vector<Sample> samples(count, Sample{grey, grey, grey, 1});
-  Samples message{epoch, {tile}, kNoStep, {1}, static_cast<std::uint32_t>(count),
+  Samples message{epoch,
+                  {tile},
+                  kNoStep,
+                  {1},
+                  static_cast<std::uint32_t>(count),
                   Buffer(count * sizeof(Sample))};
   std::memcpy(message.packed.data(), samples.data(), count * sizeof(Sample));
   return message;

@@ -62,9 +62,9 @@ double Antialiasing::squared_bend(TileLattice& lattice, int x, int y) {
     const auto& known = apron_.at(apron);
     return known ? known->lanes() : centre;
   };
-  const double bend = double(greatest(
-      greater_of(bend_between(before({-1, y}, x - 1, y), centre, lattice.at(x + 1, y)),
-              bend_between(before({x, -1}, x, y - 1), centre, lattice.at(x, y + 1)))));
+  const double bend = double(
+      greatest(greater_of(bend_between(before({-1, y}, x - 1, y), centre, lattice.at(x + 1, y)),
+                          bend_between(before({x, -1}, x, y - 1), centre, lattice.at(x, y + 1)))));
   return bend * bend;
 }
 
@@ -107,15 +107,17 @@ std::vector<PixelOrder> Antialiasing::choose_all(TileLattice& lattice,
   return orders;
 }
 
-void Antialiasing::add(TileLattice& lattice, const PixelOrder& order, std::span<const Sample> samples,
-                       std::uint32_t surfaces, const Appearance& appearance) {
+void Antialiasing::add(TileLattice& lattice, const PixelOrder& order,
+                       std::span<const Sample> samples, std::uint32_t surfaces,
+                       const Appearance& appearance) {
   const int x = order.place.x, y = order.place.y;
   auto found = place_of_.find(key_of(order.place));
   const bool is_new = found == place_of_.end();
   if (is_new) {
     const Sample& first = order.first == 0 ? samples[0] : lattice.sample(x, y);
     found = place_of_.emplace(key_of(order.place), sums_.size()).first;
-    sums_.emplace_back(order.place, std::sqrt(squared_bend(lattice, x, y)), first, shown(first, appearance));
+    sums_.emplace_back(order.place, std::sqrt(squared_bend(lattice, x, y)), first,
+                       shown(first, appearance));
     if (order.first == 0) samples = samples.subspan(1);
   }
   PixelSum& sum = sums_[found->second];

@@ -21,9 +21,9 @@ class Probes {
   /// Of the next `count` places of each block those that are not known. The known ones count too,
   /// as places without an error: to go on to others would favour the surroundings of what is known.
   std::vector<SampleOffset> next(const TileLattice& lattice, int count);
-  /// `squared` is the squared error that was found at a place of the last next(). A surprise, beyond
-  /// what the samples around let expect, is as rare as all probes of its block so far make it, and
-  /// not only the last ones: what they had found would be sampled by now.
+  /// `squared` is the squared error that was found at a place of the last next(). A surprise,
+  /// beyond what the samples around let expect, is as rare as all probes of its block so far make
+  /// it, and not only the last ones: what they had found would be sampled by now.
   void note(SampleOffset place, double squared, bool surprising);
   /// The sum over all pixels of the squared error of filling in, by what the last probes found.
   double squared_error(const TileLattice& lattice) const;

@@ -74,8 +74,8 @@ class Chooser {
   }
 
   bool met_different_surfaces(const Corner& a, const Corner& b) {
-    return lattice_.with_surfaces() && lattice_.surfaces_at(a.place.x, a.place.y) !=
-                                           lattice_.surfaces_at(b.place.x, b.place.y);
+    return lattice_.with_surfaces() &&
+           lattice_.surfaces_at(a.place.x, a.place.y) != lattice_.surfaces_at(b.place.x, b.place.y);
   }
   bool met_different_surfaces(const Corner& a, const Corner& b, const Corner& c, const Corner& d) {
     return met_different_surfaces(a, b) || met_different_surfaces(a, c) ||
@@ -115,12 +115,10 @@ class Chooser {
     const ShownLanes way = b.color - a.color;
     if (!exceeds(distance(a.color, b.color), flat_)) return false;
     // Where the tile ends the line goes on straight.
-    const ShownLanes in = lattice_.contains(before.x, before.y)
-                              ? a.color - lattice_.at(before.x, before.y)
-                              : way;
-    const ShownLanes out = lattice_.contains(after.x, after.y)
-                               ? lattice_.at(after.x, after.y) - b.color
-                               : way;
+    const ShownLanes in =
+        lattice_.contains(before.x, before.y) ? a.color - lattice_.at(before.x, before.y) : way;
+    const ShownLanes out =
+        lattice_.contains(after.x, after.y) ? lattice_.at(after.x, after.y) - b.color : way;
     return exceeds(distance(in, out), rule_.bend);
   }
 
@@ -168,13 +166,15 @@ std::vector<Square> quarters(const TileLattice& lattice, std::span<const Square>
   std::vector<Square> result;
   for (const Square square : squares) {
     const int x = square.x, y = square.y;
-    if (!lattice.known(x + half, y + half) && !lattice.known(x + half, y) && !lattice.known(x, y + half) &&
-        !lattice.known(x + spacing, y + half) && !lattice.known(x + half, y + spacing))
+    if (!lattice.known(x + half, y + half) && !lattice.known(x + half, y) &&
+        !lattice.known(x, y + half) && !lattice.known(x + spacing, y + half) &&
+        !lattice.known(x + half, y + spacing))
       continue;
     for (const int dy : {0, half})
       for (const int dx : {0, half})
         if (lattice.is_pixel(x + dx, y + dy))
-          result.push_back({static_cast<std::uint16_t>(x + dx), static_cast<std::uint16_t>(y + dy)});
+          result.push_back(
+              {static_cast<std::uint16_t>(x + dx), static_cast<std::uint16_t>(y + dy)});
   }
   return result;
 }

@@ -4,7 +4,8 @@
 // VOL2): a sample between two neighbours only if those two differ, and the centre of a square only
 // if any of its samples differ. Conventional subdivision: all five of a square whose corners
 // differ. Two rays that met different surfaces differ whatever their colours. Pure: what is chosen
-// depends on the lattice and the rule alone; along an edge that two tiles share both choose the same.
+// depends on the lattice and the rule alone; along an edge that two tiles share both choose the
+// same.
 
 #include <span>
 #include <vector>
@@ -30,18 +31,20 @@ struct Square {
 /// All squares of a spacing that hold a pixel, in Z-order of their blocks.
 std::vector<Square> squares_of(const TileLattice& lattice, int spacing);
 
-/// Appends the places wanted in `squares` to `wanted`, each once, and marks them in the lattice, which
-/// must be given their samples before it is asked for anything finer. A square that holds one of
-/// `surprises` is subdivided whatever the rule says.
+/// Appends the places wanted in `squares` to `wanted`, each once, and marks them in the lattice,
+/// which must be given their samples before it is asked for anything finer. A square that holds one
+/// of `surprises` is subdivided whatever the rule says.
 void choose(TileLattice& lattice, std::span<const Square> squares, int spacing,
             const SubdivisionRule& rule, std::span<const SampleOffset> surprises,
             std::vector<SampleOffset>& wanted);
 
 /// The quarters of those squares in which something is known beyond their corners.
-std::vector<Square> quarters(const TileLattice& lattice, std::span<const Square> squares, int spacing);
+std::vector<Square> quarters(const TileLattice& lattice, std::span<const Square> squares,
+                             int spacing);
 
-/// Those and the ones to their right and below, each once. A pixel lies in the square whose upper left
-/// corner it is or that it is inside of, but an edge just left of it or above runs through others.
+/// Those and the ones to their right and below, each once. A pixel lies in the square whose upper
+/// left corner it is or that it is inside of, but an edge just left of it or above runs through
+/// others.
 std::vector<Square> with_next(const TileLattice& lattice, std::span<const Square> squares,
                               int spacing);
 

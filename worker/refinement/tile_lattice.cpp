@@ -27,8 +27,7 @@ Shown shown(const Sample& sample, const Appearance& appearance) {
   const ShownLanes premultiplied{sample.red, sample.green, sample.blue, 0};
   ShownLanes value = premultiplied + (1 - sample.alpha) * appearance.behind.lanes();
   if (appearance.color_space == ColorSpace::kLinear) {
-    for (int c = 0; c < 3; ++c)
-      value[c] = static_cast<float>(srgb_from_linear(double(value[c])));
+    for (int c = 0; c < 3; ++c) value[c] = static_cast<float>(srgb_from_linear(double(value[c])));
   }
   const ShownLanes black{0, 0, 0, 0}, white{1, 1, 1, 1};
   return Shown::of(lesser_of(greater_of(value, black), white));

@@ -129,8 +129,8 @@ bool TileRefinement::cast_orders(std::span<const PixelOrder> orders, const Cast&
   positions_.clear();
   for (const PixelOrder& order : orders)
     for (std::uint32_t number = order.first; number < order.last; ++number)
-      positions_.push_back(sample_position(task_.rect.x + order.place.x,
-                                           task_.rect.y + order.place.y, number));
+      positions_.push_back(
+          sample_position(task_.rect.x + order.place.x, task_.rect.y + order.place.y, number));
   if (!cast_positions(cast)) return false;
   if (orders.empty()) return true;
   std::size_t at = 0;
@@ -174,8 +174,8 @@ double TileRefinement::error_of_grid(int spacing) {
   for (int y = 0; y < lattice_.tile().height; y += spacing)
     for (int x = 0; x < lattice_.tile().width; x += step) {
       const ShownLanes left = lattice_.at(x, y), right = lattice_.at(x + step, y);
-      sum += between ? kLeftByHalving * squared_distance(lattice_.at(x + spacing, y),
-                                                         middle(left, right))
+      sum += between ? kLeftByHalving *
+                           squared_distance(lattice_.at(x + spacing, y), middle(left, right))
                      : kErrorOfDifference * squared_distance(left, right);
       ++count;
     }
