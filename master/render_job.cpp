@@ -31,6 +31,15 @@ double progress_of(const ViewState& view, const StopRule& rule) {
   return std::clamp(std::max(by_rays, by_error), 0.0, 1.0);
 }
 
+/// Whether steps bring no rays any more, since each pixel has as many as it may have. Every pixel is
+/// probed well before this step; single steps without rays there may be at any time.
+bool is_exhausted(const ViewState& view) {
+  constexpr std::size_t kAllProbed = 18, kInVain = 3;
+  const std::size_t count = view.steps.size();
+  return count >= kAllProbed + kInVain &&
+         view.steps[count - 1].rays == view.steps[count - 1 - kInVain].rays;
+}
+
 /// Refines until the rule or the time says stop, and the compositors hold it all.
 void cast_view(Cluster& cluster, const RenderRequest& request) {
   const ViewState& view = cluster.view();
@@ -46,7 +55,8 @@ void cast_view(Cluster& cluster, const RenderRequest& request) {
     if (!std::holds_alternative<StepCast>(*event)) continue;
     request.progress(progress_of(view, request.stop));
     const StepState& last = view.steps.back();
-    enough = is_enough(request.stop, view.cast(), last.quality, last.rays, view.pixels());
+    enough = is_enough(request.stop, view.cast(), last.quality, last.rays, view.pixels()) ||
+             is_exhausted(view);
     if (!enough) cluster.refine_further();
   }
   cluster.cancel_view();
