@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// What scattered rays cost against whole frames: goldthread_bench_scattered [ROUNDS [LOOK]]. Lists
-// take turns within each round, so that whatever else the machine does falls on all alike.
+// What scattered rays cost against whole frames: goldthread_bench_scattered [ROUNDS [LOOK [SET]]],
+// SET an instruction set. Lists take turns within each round, so that whatever else the machine
+// does falls on all alike.
 //
 // "speed" is a list's work per time against the frame's. The work of a ray is a sixteenth of the
 // samples of its 4×4 pixels cast together: unlike the samples that a call counts, it does not
@@ -16,6 +17,7 @@
 #include "bench/error/frame.h"
 #include "bench/error/subject.h"
 #include "bench/kernels/ray_lists.h"
+#include "worker/kernels/kernel_table.h"
 #include "worker/ray_caster.h"
 
 namespace goldthread::bench {
@@ -158,5 +160,6 @@ int run(int rounds, const std::string& look) {
 }  // namespace goldthread::bench
 
 int main(int argc, char** argv) {
+  if (argc > 3) goldthread::force_instruction_set(argv[3]);
   return goldthread::bench::run(argc > 1 ? std::atoi(argv[1]) : 7, argc > 2 ? argv[2] : "");
 }
