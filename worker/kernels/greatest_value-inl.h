@@ -89,7 +89,9 @@ class GreatestValue {
 #if HWY_TARGET != HWY_SCALAR
     const float first = steps_.step(), last = first + float(steps - 1);
     if (steps >= kTogether && beam_.is_narrow(first, last, kTogether, FieldType::kBeamEdges)) {
-      for (; steps >= kTogether; steps -= kTogether) take_together();
+      for (; steps >= kTogether; steps -= kTogether) take_together<false>();
+    } else if (beam_.is_wide(first, last, FieldType::kMostEdges)) {
+      for (; steps >= kTogether; steps -= kTogether) take_together<true>();
     }
 #endif
     take_parts(steps);
@@ -97,6 +99,8 @@ class GreatestValue {
 
 #if HWY_TARGET != HWY_SCALAR
   static constexpr int kTogether = 3;
+  static constexpr int kAhead = 12;
+  template <bool kApart>
   HWY_INLINE void take_together() {
     Floats middles[kTogether], values[kTogether];
     CellPlace places[kTogether];
@@ -105,7 +109,13 @@ class GreatestValue {
       middles[i] = hn::Add(steps_.index(), hn::Set(kFloats, 0.5F + float(i)));
       places[i] = locate(rays_.at(middles[i], scene_.field.upper));
     }
-    field_.values(beam_, steps_.step(), places, rays_.hit(), values);
+    if constexpr (kApart) {
+      const Floats ahead = hn::Add(steps_.index(), hn::Set(kFloats, float(kAhead)));
+      const CellPlace soon = locate(rays_.at(ahead, scene_.field.upper));
+      field_.values_apart(places, soon, rays_.hit(), values);
+    } else {
+      field_.values(beam_, steps_.step(), places, rays_.hit(), values);
+    }
     GOLDTHREAD_UNROLL
     for (int i = 0; i < kTogether; ++i) consider(rays_.hit(), middles[i], values[i]);
     steps_.advance(float(kTogether));

@@ -12,8 +12,10 @@
 //     ├ ray_packet-inl.h         a ray per lane, set up in double, segments counted from the camera
 //     ├ ray_march-inl.h          emission and absorption
 //     │ ├ cell_walk-inl.h        leaps over empty cells
-//     │ ├ field-inl.h            trilinear values and gradients
-//     │ │ └ window-inl.h         a packet's voxels by permutations in registers
+//     │ ├ field-inl.h            values and gradients
+//     │ │ ├ interpolation-inl.h  both are trilinear between voxels
+//     │ │ ├ window-inl.h         a packet's voxels by permutations in registers
+//     │ │ └ lone_voxels-inl.h    those of rays too far apart for that, lane by lane
 //     │ ├ transfer-inl.h         value to colour and opacity
 //     │ ├ shading-inl.h          Phong
 //     │ └ accumulation-inl.h     front to back

@@ -92,7 +92,10 @@ class RayMarch {
     const float first = steps_.step(), last = first + float(steps - 1);
     if (steps >= kTogether && beam_.is_narrow(first, last, kTogether, FieldType::kBeamEdges)) {
       for (; steps >= kTogether && !hn::AllFalse(kFloats, alive_); steps -= kTogether)
-        add_whole<kTogether>();
+        add_whole<kTogether, false>();
+    } else if (beam_.is_wide(first, last, FieldType::kMostEdges)) {
+      for (; steps >= kTogether && !hn::AllFalse(kFloats, alive_); steps -= kTogether)
+        add_whole<kTogether, true>();
     }
 #endif
     for (; steps > 0 && !hn::AllFalse(kFloats, alive_); --steps) {
@@ -105,9 +108,10 @@ class RayMarch {
     }
   }
   static constexpr int kTogether = 3;
+  static constexpr int kAhead = 12;
 
 #if HWY_TARGET != HWY_SCALAR
-  template <int kCount>
+  template <int kCount, bool kApart>
   HWY_INLINE void add_whole() {
     CellPlace places[kCount];
     Floats3 positions[kCount];
@@ -117,7 +121,12 @@ class RayMarch {
       places[i] = locate(positions[i]);
     }
     Floats values[kCount];
-    field_.values(beam_, steps_.step(), places, present_, values);
+    if constexpr (kApart) {
+      field_.values_apart(places, locate(middle_of_whole(kAhead)), hn::And(present_, wanted_),
+                          values);
+    } else {
+      field_.values(beam_, steps_.step(), places, present_, values);
+    }
     FloatMask finite[kCount];
     Look looks[kCount];
     GOLDTHREAD_UNROLL

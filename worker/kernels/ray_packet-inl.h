@@ -264,6 +264,17 @@ class Beam {
     return true;
   }
 
+  /// Whether the rays are farther apart than any of the edges at both of two segments.
+  HWY_INLINE bool is_wide(float first, float last, const float (&edges)[3]) const {
+    for (int axis = 0; axis < 3; ++axis) {
+      const float width = high_[axis] - low_[axis];
+      const float change = high_change_[axis] - low_change_[axis];
+      if (width + std::min(change * (first + 0.5F), change * (last + 0.5F)) > edges[axis])
+        return true;
+    }
+    return false;
+  }
+
  private:
   /// More than what rounding may move a sample by, in voxels.
   static constexpr float kSlack = 2e-3F;

@@ -34,6 +34,7 @@ class SurfaceMarch {
         shading_(arguments.scene.phong, arguments.view.lights, rays.direction),
         step_mm_(float(arguments.scene.step_mm)),
         per_step_{inverse(rays.direction.x), inverse(rays.direction.y), inverse(rays.direction.z)},
+        company_(company_of(rays)),
         alive_(hn::Gt(rays.segments, hn::Zero(kFloats))),
         at_(rays.first),
         integrated_(rays.first) {}
@@ -63,14 +64,19 @@ class SurfaceMarch {
   }
 
   /// The rays that have come least far, and those close to them: a packet keeps together, so that
-  /// its voxels lie in one window.
+  /// its voxels lie in one window. All rays, where none would hold them anyway.
   HWY_INLINE FloatMask near_the_last() const {
     const Floats far = hn::Set(kFloats, 1e30F);
     const Floats way = hn::Add(at_, rays_.delay);
     const Floats least = hn::MinOfLanes(kFloats, hn::IfThenElse(alive_, way, far));
-    return hn::And(alive_, hn::Le(way, hn::Add(least, hn::Set(kFloats, kCompany))));
+    return hn::And(alive_, hn::Le(way, hn::Add(least, hn::Set(kFloats, company_))));
   }
-  static constexpr float kCompany = 4;  ///< steps
+  static HWY_INLINE float company_of([[maybe_unused]] const Rays& rays) {
+#if HWY_TARGET != HWY_SCALAR
+    if (Beam(rays).is_wide(0, 0, FieldType::kMostEdges)) return 1e9F;
+#endif
+    return 4;
+  }
 
   /// Puts rays into the cells around where they are.
   HWY_INLINE void enter(FloatMask lanes) {
@@ -301,6 +307,8 @@ class SurfaceMarch {
   PhongShading shading_;
   float step_mm_;
   Floats3 per_step_;  ///< 1 / direction
+
+  float company_;  ///< how far rays may be from each other to go on together, in steps
 
   FloatMask alive_;
   Floats at_;          ///< where the ray enters its cell, in steps

@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Voxels for a packet without gathers. Neighbouring rays are close to each other at equal depth, so
 // the voxels of all their samples lie in one window of 8³, four column runs of 128 bytes each
-// (ColumnLayout), and are taken from there by permutations of bytes in registers. Where a packet is
-// wider, windows are laid over its lanes one after the other until each had its turn; what a lane
-// gets does not depend on its company.
+// (ColumnLayout), and are taken from there by permutations of bytes in registers. What a lane gets
+// does not depend on its company.
 
 #if defined(GOLDTHREAD_WORKER_KERNELS_WINDOW_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef GOLDTHREAD_WORKER_KERNELS_WINDOW_INL_H_
@@ -16,6 +15,7 @@
 #include <limits>
 
 #include "worker/kernels/kernel_types.h"
+#include "worker/kernels/lone_voxels-inl.h"
 #include "worker/kernels/ray_packet-inl.h"
 #include "worker/kernels/vector_math-inl.h"
 
@@ -23,51 +23,14 @@ HWY_BEFORE_NAMESPACE();
 namespace goldthread::HWY_NAMESPACE {
 
 #if HWY_TARGET == HWY_SCALAR
-using ByteTag = UnsignedTag;  // four bytes in the one lane
-#else
-using ByteTag = hn::Repartition<std::uint8_t, FloatTag>;
-#endif
-using Bytes = hn::Vec<ByteTag>;
-constexpr ByteTag kBytes{};
-
-struct Ints3 {
-  Ints x, y, z;
-};
-
-#if HWY_TARGET == HWY_SCALAR
 
 /// One lane needs no window: its voxels are read from where they lie.
 template <int kReach>
-class Window {
+class Window : public LoneVoxels {
  public:
-  HWY_INLINE explicit Window(const FieldLayout& layout) : layout_(layout) {}
-
+  using LoneVoxels::LoneVoxels;
   HWY_INLINE bool reaches(const Ints3&, FloatMask) const { return true; }
-  HWY_INLINE bool reaches(const Ints3&, const Ints3&, FloatMask) const { return true; }
-  template <class Use>
-  HWY_INLINE void cover(const Ints3&, FloatMask, Use&&) const {}
-  using Place = Ints3;
-  HWY_INLINE Place place(const Ints3& at) const { return at; }
-
-  template <int kX0, int kX1, int kY0, int kY1, int kFirstZ, int kCount>
-  HWY_INLINE void take(const Place& at, FloatMask, int plane, Bytes (&slices)[kCount]) const {
-    const std::uint8_t* voxels = layout_.voxels + plane * layout_.plane_bytes;
-    // Stored coordinates: voxel + 1.
-    const int x = hn::GetLane(at.x) + 1, y = hn::GetLane(at.y) + 1, z = hn::GetLane(at.z) + 1;
-    const auto voxel = [&](int i, int j, int k) {
-      return std::uint32_t(voxels[(i >> 2) * layout_.column_bytes + (j >> 2) * layout_.row_bytes +
-                                  std::int64_t(k) * 16 + (j & 3) * 4 + (i & 3)]);
-    };
-    for (int s = 0; s < kCount; ++s) {
-      const int k = z + kFirstZ + s;
-      slices[s] =
-          hn::Set(kBytes, voxel(x + kX0, y + kY0, k) | voxel(x + kX1, y + kY0, k) << 8 |
-                              voxel(x + kX0, y + kY1, k) << 16 | voxel(x + kX1, y + kY1, k) << 24);
-    }
-  }
-
- private:
-  const FieldLayout& layout_;
+  HWY_INLINE FloatMask reached(const Ints3&, FloatMask lanes) const { return lanes; }
 };
 
 #else
@@ -104,15 +67,23 @@ class Window {
   }
 
   /// Lays the window over the cells of all `lanes`, `at` their lower corners; false where it does
-  /// not reach, then cover() must be used.
+  /// not reach.
   HWY_INLINE bool reaches(const Ints3& at, FloatMask lanes) {
     if (hn::AllFalse(kFloats, hn::AndNot(contains(at), lanes))) return true;
     move_to_lowest(at, lanes);
     return hn::AllFalse(kFloats, hn::AndNot(contains(at), lanes));
   }
 
+  /// Those of `lanes` that it does reach.
+  HWY_INLINE FloatMask reached(const Ints3& at, FloatMask lanes) const {
+    return hn::And(lanes, contains(at));
+  }
+
   /// How large a box lie() can take in.
   static constexpr float kBeamEdges[3] = {float(kRoom - 3), float(kRoom - 3), float(kRoom)};
+
+  /// What no window takes in, wherever it begins.
+  static constexpr float kMostEdges[3] = {float(kRoom + 1), float(kRoom + 1), float(kRoom + 1)};
 
   /// Lays the window over a beam, which must be narrow, at segments `first` … `last`. Waits for
   /// nothing and decides nothing, so that it is done long before its voxels are needed.
@@ -124,22 +95,21 @@ class Window {
     origin_ = {everywhere<0>(voxel), everywhere<1>(voxel), everywhere<2>(voxel)};
   }
 
-  /// Calls use(lanes) with the window on some of `lanes` until all have had their turn.
-  template <class Use>
-  HWY_INLINE void cover(const Ints3& at, FloatMask lanes, Use&& use) {
-    while (!hn::AllFalse(kFloats, lanes)) {
-      move_to_lowest(at, lanes);
-      FloatMask inside = hn::And(lanes, contains(at));
-      // The lowest coordinates may be those of different lanes, with none of them close by.
-      if (hn::AllFalse(kFloats, inside)) {
-        move_to_first(at, lanes);
-        inside = hn::And(lanes, contains(at));
-      }
-      use(inside);
-      lanes = hn::AndNot(inside, lanes);
-    }
+  /// The eight voxels of each lane's cell, slice by slice.
+  HWY_INLINE void take_cell(const Ints3& at, FloatMask lanes, int plane, Bytes (&slices)[2]) const {
+    take<0, 1, 0, 1, 0, 2>(place(at), lanes, plane, slices);
+  }
+  /// The same and what lies around them: four slices of the cell, from the one before it on, then
+  /// in its own two what lies beside it along x, and along y.
+  HWY_INLINE void take_around(const Ints3& at, FloatMask lanes, int plane,
+                              Bytes (&slices)[8]) const {
+    const Place in_window = place(at);
+    take<0, 1, 0, 1, -1, 4>(in_window, lanes, plane, slices);
+    take<-1, 2, 0, 1, 0, 2>(in_window, lanes, plane, slices + 4);
+    take<0, 1, -1, 2, 0, 2>(in_window, lanes, plane, slices + 6);
   }
 
+ private:
   /// Where a lane's cell lies in the window, as bytes.
   struct Place {
     Bytes xy;  ///< x + 8·y
@@ -155,8 +125,7 @@ class Window {
   /// Of one plane, four voxels a lane in its four bytes: (kX0, kY0), (kX1, kY0), (kX0, kY1),
   /// (kX1, kY1) from the cell's lower corner, and that in kCount slices from kFirstZ on.
   template <int kX0, int kX1, int kY0, int kY1, int kFirstZ, int kCount>
-  HWY_INLINE void take(const Place& place, FloatMask lanes, int plane,
-                       Bytes (&slices)[kCount]) const {
+  HWY_INLINE void take(const Place& place, FloatMask lanes, int plane, Bytes* slices) const {
     constexpr std::int32_t kOffsets =
         four_bytes(kX0 + 8 * kY0, kX1 + 8 * kY0, kX0 + 8 * kY1, kX1 + 8 * kY1);
     const Bytes q = hn::Add(place.xy, hn::BitCast(kBytes, hn::Set(kInts, kOffsets)));
@@ -168,7 +137,6 @@ class Window {
     look_up<kFirstZ, kCount>(run, q, in_slice, place.z, lanes, slices);
   }
 
- private:
   using IntPointTag = hn::Simd<std::int32_t, 4, 0>;
   using IntPoint = hn::Vec<IntPointTag>;
   static constexpr IntPointTag kIntPoint{};
@@ -232,14 +200,6 @@ class Window {
     };
     move_to(lowest(at.x), lowest(at.y), lowest(at.z));
   }
-  HWY_INLINE void move_to_first(const Ints3& at, FloatMask lanes) {
-    HWY_ALIGN std::int32_t x[hn::MaxLanes(kInts)], y[hn::MaxLanes(kInts)], z[hn::MaxLanes(kInts)];
-    hn::Store(at.x, kInts, x);
-    hn::Store(at.y, kInts, y);
-    hn::Store(at.z, kInts, z);
-    const auto i = std::size_t(hn::FindFirstTrue(kFloats, lanes));
-    move_to(x[i], y[i], z[i]);
-  }
   HWY_INLINE void move_to(std::int32_t x, std::int32_t y, std::int32_t z) {
     // Stored coordinates: voxel + 1.
     const auto begin = [&](std::int32_t v, int axis) {
@@ -254,7 +214,7 @@ class Window {
   /// 128 bytes of a run are two registers: one permutation each, then choose between the columns.
   template <int kFirstZ, int kCount>
   HWY_INLINE void look_up(const std::uint8_t* run, Bytes q, Bytes in_slice, Ints z, FloatMask,
-                          Bytes (&slices)[kCount]) const {
+                          Bytes* slices) const {
     const auto column = [&](std::int64_t offset, Bytes index) HWY_ATTR {
       return Bytes{_mm512_permutex2var_epi8(_mm512_loadu_si512(run + offset), index.raw,
                                             _mm512_loadu_si512(run + offset + 64))};
@@ -280,7 +240,7 @@ class Window {
   /// permuted one after the other, and each lane keeps its own.
   template <int kFirstZ, int kCount>
   HWY_INLINE void look_up(const std::uint8_t* run, Bytes q, Bytes in_slice, Ints z, FloatMask lanes,
-                          Bytes (&slices)[kCount]) const {
+                          Bytes* slices) const {
     const auto wanted = hn::RebindMask(kInts, lanes);
     const Ints some = hn::IfThenElse(wanted, z, hn::Set(kInts, origin_room()));
     const int first = hn::GetLane(hn::MinOfLanes(kInts, some));
@@ -296,7 +256,7 @@ class Window {
         hn::IfThenElse(right, none, back_index), hn::IfThenElse(right, back_index, none)};
     const std::int64_t offsets[4] = {0, layout_.column_bytes, layout_.row_bytes,
                                      layout_.row_bytes + layout_.column_bytes};
-    for (Bytes& slice : slices) slice = hn::Zero(kBytes);
+    for (int i = 0; i < kCount; ++i) slices[i] = hn::Zero(kBytes);
     for (int s = first + kFirstZ; s < last + kFirstZ + kCount; ++s) {
       Bytes here = hn::Zero(kBytes);
       for (int c = 0; c < 4; ++c) {
