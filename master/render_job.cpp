@@ -31,8 +31,8 @@ double progress_of(const ViewState& view, const StopRule& rule) {
   return std::clamp(std::max(by_rays, by_error), 0.0, 1.0);
 }
 
-/// Whether steps bring no rays any more, since each pixel has as many as it may have. Every pixel is
-/// probed well before this step; single steps without rays there may be at any time.
+/// Whether steps bring no rays any more, since each pixel has as many as it may have. Every pixel
+/// is probed well before this step; single steps without rays there may be at any time.
 bool is_exhausted(const ViewState& view) {
   constexpr std::size_t kAllProbed = 18, kInVain = 3;
   const std::size_t count = view.steps.size();

@@ -46,6 +46,7 @@ double AdaptiveMethod::cast_seconds(AdaptiveCaster& caster, int repeats) const {
   RayLog log(*plain);
   refine(caster, log);
   std::vector<double> seconds;
+  seconds.reserve(std::size_t(repeats));
   for (int i = 0; i < repeats; ++i) seconds.push_back(log.replay(caster.crew()));
   return median(seconds);
 }

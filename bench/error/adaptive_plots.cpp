@@ -62,6 +62,7 @@ std::string subtitle(const Report& report) {
 std::string adaptive_time(const Report& report) {
   if (report.adaptive.rows.empty()) return {};
   std::vector<Curve> curves;
+  curves.reserve(std::size(kLooks) + 1);
   for (const Look look : kLooks) curves.push_back(refined_curve(report, look));
   add_every_pixel(report, curves);
   return kFrame + std::string(kLogLog) +

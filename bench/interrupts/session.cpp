@@ -12,6 +12,7 @@ constexpr std::chrono::seconds kPatience{60};
 
 std::vector<std::unique_ptr<Transport>> connected(const LoopbackNetwork& network, int ranks) {
   std::vector<std::unique_ptr<Transport>> transports;
+  transports.reserve(std::size_t(ranks));
   for (int rank = 0; rank < ranks; ++rank) transports.push_back(network.connect({rank}));
   return transports;
 }

@@ -30,6 +30,7 @@ struct Candidate {
 
 std::vector<Candidate> candidates(const Subject& subject) {
   std::vector<Candidate> all;
+  all.reserve(std::size(kLooks) + 3);
   for (const Look look : kLooks) all.push_back({name_of(look), subject.in(look)});
   for (const double voxels : {0.5, 1.0, 2.0})
     all.push_back({fmt::format("Phong, {} voxels", voxels),
@@ -78,6 +79,7 @@ class Bench {
       }
     for (std::size_t i = 0; i < sets.size(); ++i) {
       std::vector<double> speeds;
+      speeds.reserve(std::size_t(rounds));
       for (int round = 0; round < rounds; ++round)
         speeds.push_back(work_of(sets[i]) / seconds[i][std::size_t(round)] / work_of(sets[0]) *
                          seconds[0][std::size_t(round)]);
@@ -125,6 +127,7 @@ class Bench {
     std::vector<Sample> samples(pixels.size());
     source_->cast(pixels, samples);
     std::vector<Color> colors;
+    colors.reserve(samples.size());
     for (const Sample& sample : samples)
       colors.push_back(displayed(sample, scene_.image.background,
                                  scene_.image.color_space == ColorSpace::kLinear));

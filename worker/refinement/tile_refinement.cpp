@@ -41,8 +41,7 @@ bool TileRefinement::advance(const Cast& cast) {
   if (step_ < kFirstAdaptiveStep) return advance_coarsely(cast);
   const StepPlan plan = plan_of(step_);
   const bool even = task_.how.sampling == Sampling::kEveryPixel;
-  if (!(even ? advance_evenly(plan, cast) : advance_adaptively(plan, cast))) return false;
-  return true;
+  return even ? advance_evenly(plan, cast) : advance_adaptively(plan, cast);
 }
 
 bool TileRefinement::advance_coarsely(const Cast& cast) {
