@@ -9,6 +9,7 @@
 #endif
 
 #include "worker/kernels/greatest_value-inl.h"
+#include "worker/kernels/packet_size.h"
 #include "worker/kernels/ray_march-inl.h"
 #include "worker/kernels/surface_march-inl.h"
 
@@ -39,8 +40,9 @@ HWY_NOINLINE CastCounts cast(const CastArguments& arguments) {
   CastCounts counts;
   counts.rays = arguments.positions.size();
   RayColumns columns;
-  for (std::size_t i = 0; i < arguments.positions.size(); i += kLanes) {
-    const std::size_t count = std::min(kLanes, arguments.positions.size() - i);
+  std::size_t count = 0;
+  for (std::size_t i = 0; i < arguments.positions.size(); i += count) {
+    count = packet_size(arguments.positions.subspan(i), kLanes);
     Sample* samples = arguments.samples.data() + i;
     if (!set_up_rays(arguments.scene, arguments.view, arguments.positions.data() + i, count,
                      columns)) {

@@ -14,8 +14,6 @@ constexpr double kFirstPixels = 8;
 /// The samples that a pixel gets first, beyond the one in its centre.
 constexpr std::uint32_t kFirstSamples = 4;
 
-std::uint32_t key_of(SampleOffset place) { return (std::uint32_t(place.y) << 16) | place.x; }
-
 /// The second difference of three pixels in a row.
 ShownLanes bend_between(ShownLanes before, ShownLanes at, ShownLanes after) {
   return distance(before + after, at + at);
@@ -35,7 +33,7 @@ void for_pixels(const TileLattice& lattice, std::span<const Square> squares, con
 void Antialiasing::restart(ImageSize tile) {
   apron_.restart(tile);
   sums_.clear();
-  place_of_.clear();
+  number_of_.clear();
   squared_bends_ = 0;
   learned_ = kFirstShare * kFirstShare * kFirstPixels;
   learned_from_ = kFirstPixels;
@@ -71,10 +69,10 @@ double Antialiasing::squared_bend(TileLattice& lattice, int x, int y) {
 std::vector<PixelOrder> Antialiasing::choose(TileLattice& lattice, std::span<const Square> squares,
                                              const StepPlan& plan, std::uint32_t most) {
   std::vector<PixelOrder> orders;
-  const double share = squared_share();
+  const PixelErrorModel model(squared_share());
   for (const PixelSum& sum : sums_) {
     const std::uint32_t more = sum.count() - 1;
-    if (sum.count() + more <= most && sum.squared_error(share) >= plan.worth * more)
+    if (sum.count() + more <= most && sum.squared_error(model) >= plan.worth * more)
       orders.push_back({sum.place(), sum.count(), sum.count() + more});
   }
   squared_bends_ = 0;
@@ -111,16 +109,20 @@ void Antialiasing::add(TileLattice& lattice, const PixelOrder& order,
                        std::span<const Sample> samples, std::uint32_t surfaces,
                        const Appearance& appearance) {
   const int x = order.place.x, y = order.place.y;
-  auto found = place_of_.find(key_of(order.place));
-  const bool is_new = found == place_of_.end();
+  if (number_of_.empty()) {
+    const ImageSize tile = apron_.tile();
+    number_of_.resize(std::size_t(tile.width) * std::size_t(tile.height));
+  }
+  std::uint32_t& number = number_of_[index(order.place)];
+  const bool is_new = number == 0;
   if (is_new) {
     const Sample& first = order.first == 0 ? samples[0] : lattice.sample(x, y);
-    found = place_of_.emplace(key_of(order.place), sums_.size()).first;
     sums_.emplace_back(order.place, std::sqrt(squared_bend(lattice, x, y)), first,
                        shown(first, appearance));
+    number = static_cast<std::uint32_t>(sums_.size());
     if (order.first == 0) samples = samples.subspan(1);
   }
-  PixelSum& sum = sums_[found->second];
+  PixelSum& sum = sums_[number - 1];
   for (const Sample& sample : samples) sum.add(sample, shown(sample, appearance));
   if (is_new) learn(sum);
   const bool centre_was_known = lattice.with_surfaces() && lattice.known(x, y);
@@ -131,21 +133,21 @@ void Antialiasing::learn(const PixelSum& sum) {
   if (sum.count() < 3) return;
   // The others' mean has an error of its own, which is not the centre's.
   const double off = squared_distance(sum.centre().lanes(), sum.mean_of_others().lanes()) -
-                     sum.squared_error(squared_share());
+                     sum.squared_error(PixelErrorModel(squared_share()));
   learned_ += std::min(1.0, off / (sum.bend() * sum.bend()));
   learned_from_ += 1;
 }
 
 double Antialiasing::squared_error() const {
-  const double share = squared_share();
-  double sum = squared_bends_ * share;
-  for (const PixelSum& pixel : sums_) sum += pixel.squared_error(share);
+  const PixelErrorModel model(squared_share());
+  double sum = squared_bends_ * squared_share();
+  for (const PixelSum& pixel : sums_) sum += pixel.squared_error(model);
   return sum;
 }
 
 const PixelSum* Antialiasing::find(SampleOffset place) const {
-  const auto found = place_of_.find(key_of(place));
-  return found == place_of_.end() ? nullptr : &sums_[found->second];
+  const std::uint32_t number = number_of_.empty() ? 0 : number_of_[index(place)];
+  return number == 0 ? nullptr : &sums_[number - 1];
 }
 
 }  // namespace goldthread

@@ -9,7 +9,6 @@
 #include <algorithm>
 #include <optional>
 #include <span>
-#include <unordered_map>
 #include <vector>
 
 #include "worker/refinement/pixel_sums.h"
@@ -77,9 +76,14 @@ class Antialiasing {
 
   std::span<const PixelSum> sums() const { return sums_; }
   const PixelSum* find(SampleOffset place) const;
-  std::size_t bytes() const { return sums_.size() * (sizeof(PixelSum) + 4 * sizeof(void*)); }
+  std::size_t bytes() const {
+    return sums_.size() * sizeof(PixelSum) + number_of_.size() * sizeof(std::uint32_t);
+  }
 
  private:
+  std::size_t index(SampleOffset place) const {
+    return std::size_t(place.y) * std::size_t(apron_.tile().width) + place.x;
+  }
   double squared_bend(TileLattice& lattice, int x, int y);
   void learn(const PixelSum& sum);
   /// The squared share of its bend that a centre is off by, as learned so far.
@@ -87,7 +91,8 @@ class Antialiasing {
 
   Apron apron_;
   std::vector<PixelSum> sums_;
-  std::unordered_map<std::uint32_t, std::size_t> place_of_;  ///< in sums_
+  /// Of each pixel, row by row: the number of its sum, from 1, or 0. Empty while there are none.
+  std::vector<std::uint32_t> number_of_;
   double squared_bends_ = 0;  ///< of the pixels with one sample, when they were last looked at
   double learned_ = 0;        ///< squared shares, of so many pixels
   double learned_from_ = 1;

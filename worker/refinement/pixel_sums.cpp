@@ -23,6 +23,9 @@ double gain_of(double squared_share) {
 
 }  // namespace
 
+PixelErrorModel::PixelErrorModel(double squared_share)
+    : gain(gain_of(squared_share)), unmet(kUnmet * squared_share) {}
+
 PixelSum::PixelSum(SampleOffset place, double bend, const Sample& first, const Shown& first_shown)
     : place_(place), bend_(bend), centre_(first_shown) {
   add(first, first_shown);
@@ -48,10 +51,10 @@ Sample PixelSum::mean() const {
           static_cast<float>(sums_[2] * share), static_cast<float>(sums_[3] * share)};
 }
 
-double PixelSum::squared_error(double squared_share) const {
+double PixelSum::squared_error(const PixelErrorModel& model) const {
   const double count = count_;
-  const double unmet = kUnmet * squared_share * bend_ * bend_ / (count + 1);
-  return gain_of(squared_share) * (variance() + unmet) / (count * std::sqrt(count));
+  const double unmet = model.unmet * bend_ * bend_ / (count + 1);
+  return model.gain * (variance() + unmet) / (count * std::sqrt(count));
 }
 
 Shown PixelSum::mean_of_others() const {

@@ -13,6 +13,14 @@
 
 namespace goldthread {
 
+/// How samples of a pixel tell the error of their mean, from the squared share of its bend that a
+/// centre sample is off by (as learned from many pixels): where it is large, bends are edges.
+struct PixelErrorModel {
+  explicit PixelErrorModel(double squared_share);
+  double gain;   ///< of variance / count^3/2
+  double unmet;  ///< of bend² / (count + 1): what all samples may have missed
+};
+
 class PixelSum {
  public:
   /// `bend`: the second difference of the pixel's centre and its neighbours'.
@@ -26,9 +34,8 @@ class PixelSum {
   double variance() const { return count_ > 1 ? squares_ / (3.0 * (count_ - 1)) : 0; }
   /// Estimated squared error of the mean. Scrambled Sobol samples of an edge converge like
   /// count^-3/2 in variance; the factor is measured. Samples that all agree may still have missed
-  /// what made the centre bend: `squared_share` is the squared share of its bend that a centre is
-  /// off by, so that where bends were edges such a pixel counts as not yet known.
-  double squared_error(double squared_share) const;
+  /// what made the centre bend, so that where bends were edges such a pixel counts as not yet known.
+  double squared_error(const PixelErrorModel& model) const;
   double bend() const { return bend_; }
   /// The first sample, as displayed.
   const Shown& centre() const { return centre_; }

@@ -10,6 +10,9 @@ namespace {
 constexpr double kFirstThreshold = 136.0 / 255;
 /// Down to here the threshold is halved by each step.
 constexpr double kFineThreshold = 17.0 / 255;
+bool is_fine(double threshold) { return threshold < 1.01 * kFineThreshold; }
+/// The edge, in pixels, of what one packet of rays takes whole when the threshold is fine.
+constexpr int kPacketEdge = 4;
 /// Relative to the threshold.
 constexpr double kBend = 0.5;
 constexpr double kEdge = 2;
@@ -28,7 +31,7 @@ int probes_by(double threshold) {
 
 double threshold_at(int round) {
   double threshold = kFirstThreshold;
-  for (; round > 0 && threshold > 1.01 * kFineThreshold; --round) threshold /= 2;
+  for (; round > 0 && !is_fine(threshold); --round) threshold /= 2;
   return threshold * std::pow(2.0, -0.5 * round);
 }
 
@@ -42,6 +45,7 @@ StepPlan plan_of(Step step) {
   plan.bend = static_cast<float>(kBend * threshold);
   plan.edge = static_cast<float>(kEdge * threshold);
   plan.worth = kWorth * kWorth * threshold * threshold;
+  plan.whole = is_fine(threshold) ? kPacketEdge : 0;
   plan.probes = probes_by(threshold);
   if (round > 0) plan.probes -= probes_by(threshold_at(round - 1));
   plan.even_samples = even_samples(step);

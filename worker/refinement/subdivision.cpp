@@ -2,6 +2,7 @@
 #include "worker/refinement/subdivision.h"
 
 #include <algorithm>
+#include <array>
 
 namespace goldthread {
 namespace {
@@ -18,6 +19,17 @@ constexpr float kFlat = 0.125F;
 struct Corner {
   Place place;
   ShownLanes color;
+};
+
+enum class EdgeState : std::uint8_t {
+  kSame,
+  kDiffers,  ///< and its middle is known or wanted
+  kAsks      ///< for a sample in its middle
+};
+
+struct Edge {
+  Place middle;
+  EdgeState state = EdgeState::kSame;
 };
 
 /// Chooses in one square after the other.
@@ -43,12 +55,16 @@ class Chooser {
     if (rule_.all_five && !differ_at_all && !surprising) return;
     if (!differ_at_all && !surprising && !exceeds(range, flat_) && !any_known(x, y)) return;
     const bool all = surprising || rule_.all_five;
-    bool any = all || differ_at_all;
-    any |= edge(a, b, {1, 0}, all);
-    any |= edge(a, c, {0, 1}, all);
-    any |= edge(b, d, {0, 1}, all);
-    any |= edge(c, d, {1, 0}, all);
-    if (any) want({x + half_, y + half_});
+    const std::array edges{look_along(a, b, {1, 0}, all), look_along(a, c, {0, 1}, all),
+                           look_along(b, d, {0, 1}, all), look_along(c, d, {1, 0}, all)};
+    const bool same = std::all_of(edges.begin(), edges.end(), [](const Edge& edge) {
+      return edge.state == EdgeState::kSame;
+    });
+    if (same && !all && !differ_at_all) return;
+    if (spacing_ == rule_.whole) return want_pixels_of(square);
+    for (const Edge& edge : edges)
+      if (edge.state == EdgeState::kAsks) want(edge.middle);
+    want({x + half_, y + half_});
   }
 
  private:
@@ -57,6 +73,12 @@ class Chooser {
     if (half_ == 1 && !lattice_.is_pixel(at.x, at.y)) return;
     if (!lattice_.mark_wanted(at.x, at.y)) return;
     wanted_.push_back({static_cast<std::uint16_t>(at.x), static_cast<std::uint16_t>(at.y)});
+  }
+
+  void want_pixels_of(Square square) {
+    for (int y = square.y; y < square.y + spacing_; ++y)
+      for (int x = square.x; x < square.x + spacing_; ++x)
+        if (lattice_.is_pixel(x, y)) want({x, y});
   }
 
   Corner corner(int x, int y) { return {{x, y}, lattice_.at(x, y)}; }
@@ -91,22 +113,20 @@ class Chooser {
            lesser_of(lesser_of(a.color, b.color), lesser_of(c.color, d.color));
   }
 
-  /// Whether the samples of an edge differ, its middle among them; it is wanted if its ends do.
-  bool edge(const Corner& a, const Corner& b, Place step, bool forced) {
+  /// Whether the samples of an edge differ, its middle among them; it asks for a middle if its
+  /// ends do.
+  Edge look_along(const Corner& a, const Corner& b, Place step, bool forced) {
     const Place middle{a.place.x + half_ * step.x, a.place.y + half_ * step.y};
-    if (lattice_.wanted(middle.x, middle.y)) return true;
+    if (lattice_.wanted(middle.x, middle.y)) return {middle, EdgeState::kDiffers};
     if (lattice_.known(middle.x, middle.y)) {
       const Corner m = corner(middle.x, middle.y);
-      return differ(a, m) || differ(m, b);
+      return {middle, differ(a, m) || differ(m, b) ? EdgeState::kDiffers : EdgeState::kSame};
     }
     // A middle that is filled was looked at from the square beyond.
-    if (!forced && lattice_.filled(middle.x, middle.y)) return false;
-    if (forced || differ(a, b) || is_bent(a, b, step)) {
-      want(middle);
-      return true;
-    }
+    if (!forced && lattice_.filled(middle.x, middle.y)) return {middle, EdgeState::kSame};
+    if (forced || differ(a, b) || is_bent(a, b, step)) return {middle, EdgeState::kAsks};
     lattice_.at(middle.x, middle.y);
-    return false;
+    return {middle, EdgeState::kSame};
   }
 
   bool is_bent(const Corner& a, const Corner& b, Place step) {

@@ -20,6 +20,7 @@ struct SubdivisionRule {
   /// samples around its middle is eight times what a cubic through them would change there.
   float bend = 1e9F;
   bool all_five = false;  ///< conventional subdivision
+  int whole = 0;  ///< squares of this spacing get all of their pixels, if any; 0: no spacing
 };
 
 /// The upper left corner of a square of some spacing.

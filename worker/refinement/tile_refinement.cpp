@@ -94,7 +94,7 @@ bool TileRefinement::advance_adaptively(const StepPlan& plan, const Cast& cast) 
 
 bool TileRefinement::subdivide(const StepPlan& plan, const Cast& cast) {
   const bool all_five = task_.how.sampling == Sampling::kSubdivision;
-  const SubdivisionRule rule{plan.threshold, plan.bend, all_five};
+  const SubdivisionRule rule{plan.threshold, plan.bend, all_five, all_five ? 0 : plan.whole};
   std::vector<Square> squares = squares_of(lattice_, kFineGridSpacing);
   for (int spacing = kFineGridSpacing; spacing > 1; spacing /= 2) {
     wanted_.clear();
