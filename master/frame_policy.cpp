@@ -60,4 +60,15 @@ FrameAction decide(const FrameState& state) {
   return settled && state.cine_wanted ? FrameAction::kCine : FrameAction::kRefine;
 }
 
+Update update_in_motion(Update chosen, std::optional<std::chrono::microseconds> whole) {
+  const bool fits = whole && *whole <= kFluidInterval;
+  return chosen == Update::kAll && fits ? Update::kWhole : chosen;
+}
+
+std::chrono::microseconds whole_after(std::chrono::microseconds coarse) {
+  // 64 times as many rays, each several times as fast: 8 to 15 were measured (docs/refinement.md).
+  constexpr int kWholeOverCoarse = 15;
+  return kWholeOverCoarse * coarse;
+}
+
 }  // namespace goldthread

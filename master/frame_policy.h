@@ -11,6 +11,8 @@
 #include <cstdint>
 #include <optional>
 
+#include "common/tile/refinement.h"
+
 namespace goldthread {
 
 /// What is wrong with a picture, against the newest input.
@@ -46,8 +48,10 @@ enum class FrameAction : std::uint8_t {
   kCine            ///< the picture is as it should be: begin the cine loop
 };
 
-/// More pictures than a display shows would be lost.
-constexpr std::chrono::microseconds kShowInterval{1'000'000 / 60};
+/// More pictures than the fastest displays show would be lost; pages say when they are ready.
+constexpr std::chrono::microseconds kShowInterval{1'000'000 / 120};
+/// What a movement looks fluid with.
+constexpr std::chrono::microseconds kFluidInterval{1'000'000 / 60};
 /// Input counts as a movement for this long: then more of it is likely.
 constexpr std::chrono::microseconds kMovementPause{150'000};
 /// A view that is refined is shown again when its error has fallen to this share.
@@ -56,5 +60,14 @@ constexpr double kWorthShowing = 0.7071067811865476;
 constexpr double kWorthShowingFinal = 0.5;
 
 FrameAction decide(const FrameState& state);
+
+/// How a view that is begun during a movement is to be cast, where pages want `chosen` and a ray in
+/// each pixel is known to take about `whole`. All pixels at once, if that is fluid: refinement
+/// would not come as far by then, since rays side by side are several times as fast as its
+/// scattered ones. At rest the view begins anew and is refined.
+Update update_in_motion(Update chosen, std::optional<std::chrono::microseconds> whole);
+
+/// How long a ray in each pixel will take, at most, from the time of the first two steps.
+std::chrono::microseconds whole_after(std::chrono::microseconds coarse);
 
 }  // namespace goldthread

@@ -77,6 +77,7 @@ const char* name_of(Filter filter) {
 const char* name_of(Update update) {
   switch (update) {
     case Update::kAll:
+    case Update::kWhole:
       return "100";
     case Update::kHalf:
       return "50";

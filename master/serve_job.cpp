@@ -92,6 +92,15 @@ void ServeJob::on(const StepCast&) {
   if (!paused_) cluster_.refine_further();
 }
 
+void ServeJob::on(const StepHeld&) {
+  const ViewState& view = cluster_.view();
+  const StepState* shown = view.shown();
+  if (shown == nullptr) return;
+  const auto held = std::chrono::duration_cast<std::chrono::microseconds>(shown->held);
+  if (update_ == Update::kWhole) whole_ = held;
+  if (update_ == Update::kAll && view.held == Step{2}) whole_ = whole_after(held);
+}
+
 void ServeJob::on(const WorkerLost& event) { request_.worker_lost(event.rank); }
 
 void ServeJob::on(const GatewayOpened& event) {
@@ -193,7 +202,7 @@ FrameState ServeJob::frame_state() const {
   Shown back = back_;
   back.spatial_px = spatial_px();
   state.back = errors_of(back);
-  // What is updated in parts is never finished.
+  // What is updated in parts, or cast for a moment, is never finished.
   state.estimated_error = update_ == Update::kAll ? estimated_error(cluster_.view()) : 255;
   state.target_error = request_.stop.error;
   state.final_error = final_error_;
@@ -237,7 +246,10 @@ void ServeJob::advance_cine() {
 }
 
 void ServeJob::begin_view() {
-  if (waiting_.scene) commit();
+  if (waiting_.scene) {
+    commit();
+    whole_.reset();
+  }
   waiting_ = {};
   cine_.reset();
   to_pages(Broadcast{view_message(*scene_.camera, scene_.image.size)});
@@ -252,13 +264,14 @@ void ServeJob::cast(const Camera& camera) {
   back_ = {camera, edits_, {}, kLargestSpatialErrorPx};
   Scene scene = scene_;
   scene.camera = camera;
-  update_ = is_moving() && cine_.idle() ? request_.display.update : Update::kAll;
+  const bool moving = is_moving() && cine_.idle();
+  update_ = moving ? update_in_motion(request_.display.update, whole_) : Update::kAll;
   cluster_.begin_view(scene, {request_.grid(scene_.image.size), refinement_of(request_.stop),
                               update_, moving_frame_++});
   back_.epoch = cluster_.view().epoch;
   if (update_ == Update::kAll) return;
   parts_.push_back(back_);
-  if (parts_.size() > parts_of(update_)) parts_.pop_front();
+  while (parts_.size() > parts_of(update_)) parts_.pop_front();
 }
 
 std::vector<ViewMovement> ServeJob::movements() const {
@@ -292,7 +305,7 @@ void ServeJob::show(bool final) {
   for (int c = 0; c < cluster_.topology().compositors; ++c)
     cluster_.post().to_compositor(cluster_.topology().compositor(c), present);
   front_ = back_;
-  front_->spatial_px = spatial_px();
+  front_->spatial_px = update_ == Update::kWhole ? kCentresPx : spatial_px();
   if (final) {
     final_error_ = estimated_error(view);
     if (std::exchange(paused_, false)) cluster_.refine_further();

@@ -58,7 +58,7 @@ class ServeJob {
   void open_gateway();
   void load();
   void on(const StepCast& event);
-  void on(const StepHeld&) {}
+  void on(const StepHeld& event);
   void on(const WorkerLost& event);
   void on(const BandPicture&) {}
   void on(const GatewayOpened& event);
@@ -106,8 +106,10 @@ class ServeJob {
   std::optional<Shown> front_;  ///< what the pages show
   std::optional<double> final_error_;
   Update update_ = Update::kAll;  ///< of the view being cast
-  std::deque<Shown> parts_;       ///< views whose samples an update keeps, the newest last
-  bool paused_ = false;           ///< the next step is opened once the picture has been shown
+  /// What a ray in each pixel took last, or will take.
+  std::optional<std::chrono::microseconds> whole_;
+  std::deque<Shown> parts_;  ///< views whose samples an update keeps, the newest last
+  bool paused_ = false;      ///< the next step is opened once the picture has been shown
   bool audience_ready_ = false;
   bool reshow_ = false;  ///< the same samples are wanted in another form
   std::uint32_t moving_frame_ = 0;

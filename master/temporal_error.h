@@ -32,4 +32,8 @@ constexpr double kShiftOfMovement = 0.5;
 /// any error.
 double spatial_error_px(double squared_error, double squared_gradient);
 
+/// How coarse a picture of pixel centres is: an edge in it is off by up to half a pixel, 1/√12 in
+/// the root mean square.
+constexpr double kCentresPx = 0.288675134594813;
+
 }  // namespace goldthread

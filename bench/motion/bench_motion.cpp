@@ -41,9 +41,7 @@ MotionReport run_motion_bench(const Subject& subject, const MotionBenchSettings&
   if (settings.full_frame_seconds)
     scene.cost_factor = *settings.full_frame_seconds / report.full_frame_seconds;
   report.cost_factor = scene.cost_factor;
-  const auto exact = [&](const Camera& camera) {
-    return *shown_picture(full_frame(scene, camera).pixels, scene.image, 0).colors;
-  };
+  const auto exact = [&](const Camera& camera) { return true_picture(scene, camera); };
   for (const CameraPath& path : camera_paths(scene.rest)) {
     PlaybackSettings playback;
     playback.seconds = settings.quick ? kQuickSeconds : kPathSeconds;

@@ -30,20 +30,20 @@ class Interruptible : public MotionMethod {
   WorkDone work(double now, const Camera& newest) override {
     if (!(newest == newest_)) last_input_ = now;
     newest_ = newest;
-    if (!view_) begin(now);
+    if (!view_ && !whole_) begin(now);
     WorkDone done;
-    do done.seconds += view_->advance();
-    while (done.seconds < kQuantumSeconds);
+    refine(done.seconds);
     const FrameState state = state_at(now + done.seconds);
     const FrameAction action = decide(state);
     if (action == FrameAction::kShow || action == FrameAction::kShowFinal ||
         action == FrameAction::kShowAndSwitch) {
-      done.shown = view_->picture(done.seconds);
-      front_ = Front{view_->camera(), state.back.spatial_px, now + done.seconds};
+      done.shown = whole_ ? whole_->picture : view_->picture(done.seconds);
+      front_ = Front{camera_, whole_ ? kCentresPx : state.back.spatial_px, now + done.seconds};
       shown_ = true;
       if (action == FrameAction::kShowFinal) final_error_ = state.estimated_error;
     }
-    if (action == FrameAction::kSwitch || action == FrameAction::kShowAndSwitch) begin(now);
+    const bool over = whole_ && !is_moving(now);
+    if (over || action == FrameAction::kSwitch || action == FrameAction::kShowAndSwitch) begin(now);
     return done;
   }
 
@@ -53,12 +53,45 @@ class Interruptible : public MotionMethod {
     double spatial_px;
     double shown_at;
   };
+  /// A view whose pixels are cast all at once, not refined.
+  struct Whole {
+    ShownPicture picture;
+    double seconds = 0;  ///< that are left until it is there
+  };
+
+  bool is_moving(double now) const { return microseconds(now - last_input_) < kMovementPause; }
 
   void begin(double now) {
-    view_ = std::make_unique<RefinedView>(scene_, newest_, now);
+    camera_ = newest_;
     begun_ = now;
     shown_ = false;
+    spent_ = 0;
     final_error_.reset();
+    view_.reset();
+    whole_.reset();
+    if (!is_moving(now) || update_in_motion(Update::kAll, expected_whole_) == Update::kAll) {
+      view_ = std::make_unique<RefinedView>(scene_, camera_, now);
+      return;
+    }
+    const FullFrame frame = full_frame(scene_, camera_);
+    whole_ = Whole{shown_picture(frame.pixels, scene_.image, now), scene_.shared(frame.seconds)};
+    expected_whole_ = microseconds(whole_->seconds);
+  }
+
+  /// A quantum of work.
+  void refine(double& seconds) {
+    if (whole_) {
+      seconds = std::max(whole_->seconds, kQuantumSeconds);
+      whole_->seconds = 0;
+      return;
+    }
+    while (seconds < kQuantumSeconds) {
+      const double taken = view_->advance();
+      seconds += taken;
+      spent_ += taken;
+      if (view_->is_whole() && view_->step() == Step{2})
+        expected_whole_ = whole_after(microseconds(spent_));
+    }
   }
 
   double lateness(const Camera& camera) const {
@@ -66,17 +99,21 @@ class Interruptible : public MotionMethod {
   }
 
   FrameState state_at(double now) const {
-    const TileQuality quality = view_->quality();
-    const double pixels = double(scene_.image.size.width) * scene_.image.size.height;
     FrameState state;
-    state.input_waiting = view_->camera() != newest_;
+    state.input_waiting = camera_ != newest_;
     state.audience_ready = true;
-    state.has_picture = view_->step() > kNoStep;
     state.shown = shown_;
     if (front_) state.front = PictureErrors{0, front_->spatial_px, lateness(front_->camera)};
-    state.back = {0, spatial_error_px(quality.squared_error, quality.squared_gradient),
-                  lateness(view_->camera())};
-    state.estimated_error = 255 * std::sqrt(quality.squared_error / pixels);
+    state.has_picture = whole_ || view_->step() > kNoStep;
+    // What is cast whole is never finished.
+    state.estimated_error = 255;
+    state.back = {0, 0, lateness(camera_)};
+    if (view_) {
+      const TileQuality quality = view_->quality();
+      const double pixels = double(scene_.image.size.width) * scene_.image.size.height;
+      state.back.spatial_px = spatial_error_px(quality.squared_error, quality.squared_gradient);
+      state.estimated_error = 255 * std::sqrt(quality.squared_error / pixels);
+    }
     state.target_error = kTargetError;
     state.final_error = final_error_;
     state.since_begun = microseconds(now - begun_);
@@ -88,8 +125,12 @@ class Interruptible : public MotionMethod {
   const MotionScene& scene_;
   Camera newest_;
   double last_input_ = 0;
+  Camera camera_;  ///< of the view that is being cast: the one or the other
   std::unique_ptr<RefinedView> view_;
+  std::optional<Whole> whole_;
   double begun_ = 0;
+  double spent_ = 0;  ///< seconds of the whole machine for view_
+  std::optional<std::chrono::microseconds> expected_whole_;
   bool shown_ = false;
   std::optional<double> final_error_;
   std::optional<Front> front_;

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <ctime>
 
+#include "bench/error/frame.h"
 #include "common/tile/tile_grid.h"
 
 namespace goldthread::bench {
@@ -11,6 +12,7 @@ namespace {
 
 constexpr std::size_t kPoints = 64;
 constexpr std::size_t kBatch = 1024;
+constexpr int kTrueRays = 3;  ///< of a pixel's row and column
 
 }  // namespace
 
@@ -74,6 +76,33 @@ FullFrame full_frame(const MotionScene& scene, const Camera& camera) {
   for (std::size_t i = 0; i < places.size(); ++i)
     frame.pixels[std::size_t(places[i].y) * std::size_t(size.width) + places[i].x] = samples[i];
   return frame;
+}
+
+std::vector<Color> true_picture(const MotionScene& scene, const Camera& camera) {
+  const ImageSize size = scene.image.size;
+  const auto source = make_ray_caster(scene.committed, camera, size);
+  const TileGrid grid = TileGrid::squares(size, 16);
+  std::vector<Color> colors(std::size_t(size.width) * std::size_t(size.height));
+  in_parallel(scene.threads, grid.count(), [&](std::size_t i) {
+    const PixelRect tile = grid.rect({static_cast<std::uint32_t>(i)});
+    std::vector<PixelPosition> positions;
+    for (int y = 0; y < kTrueRays * tile.height; ++y)
+      for (int x = 0; x < kTrueRays * tile.width; ++x)
+        positions.push_back({float(tile.x) + (float(x) + 0.5F) / kTrueRays,
+                             float(tile.y) + (float(y) + 0.5F) / kTrueRays});
+    std::vector<Sample> samples(positions.size());
+    source->cast(positions, samples);
+    const ShownPicture shown = shown_picture(samples, scene.image, 0);
+    for (int y = 0; y < kTrueRays * tile.height; ++y)
+      for (int x = 0; x < kTrueRays * tile.width; ++x) {
+        const auto pixel = std::size_t(tile.y + y / kTrueRays) * std::size_t(size.width) +
+                           std::size_t(tile.x + x / kTrueRays);
+        colors[pixel] +=
+            (*shown.colors)[std::size_t(y) * std::size_t(kTrueRays * tile.width) + std::size_t(x)] /
+            Color(kTrueRays * kTrueRays);
+      }
+  });
+  return colors;
 }
 
 }  // namespace goldthread::bench

@@ -67,4 +67,7 @@ struct FullFrame {
 };
 FullFrame full_frame(const MotionScene& scene, const Camera& camera);
 
+/// What all methods are held against: displayed colours, the mean over each pixel of 3×3 rays.
+std::vector<Color> true_picture(const MotionScene& scene, const Camera& camera);
+
 }  // namespace goldthread::bench

@@ -53,7 +53,7 @@ struct Enumerators<Filter> {
 template <>
 struct Enumerators<Update> {
   static constexpr std::array values{Update::kAll, Update::kHalf, Update::kQuarter,
-                                     Update::kFrameless};
+                                     Update::kFrameless, Update::kWhole};
 };
 /// Of a failure; kDone is none.
 template <>

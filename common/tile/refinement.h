@@ -22,10 +22,11 @@ enum class Filter : std::uint8_t { kBox, kBilinear, kBiquadratic, kPiecewiseQuad
 
 /// What of a moving picture is cast anew for each displayed frame; the rest is of older views.
 enum class Update : std::uint8_t {
-  kAll,       ///< every sample
-  kHalf,      ///< a checkerboard's fields in turn
-  kQuarter,   ///< one sample of 2×2 in turn
-  kFrameless  ///< frameless antialiasing: one of a block's Poisson-disk samples in turn
+  kAll,        ///< every sample
+  kHalf,       ///< a checkerboard's fields in turn
+  kQuarter,    ///< one sample of 2×2 in turn
+  kFrameless,  ///< frameless antialiasing: one of a block's Poisson-disk samples in turn
+  kWhole       ///< each pixel's centre, all at once: a session's choice, not a page's
 };
 
 /// What a page may choose without the scene being cast again.

@@ -86,7 +86,7 @@ void in_blocks(int width, int height, int block_width, int block_height, Visit v
 std::vector<UpdatePlace> pixels_of(const PixelRect& rect, Update update, std::uint32_t part) {
   std::vector<UpdatePlace> places;
   // As many pixels of a part as a packet has rays: 16.
-  const int block_width = update == Update::kAll ? 4 : 8;
+  const int block_width = parts_of(update) == 1 ? 4 : 8;
   const int block_height = update == Update::kQuarter ? 8 : 4;
   in_blocks(rect.width, rect.height, block_width, block_height, [&](int x, int y) {
     if (part_of_pixel(rect.x + x, rect.y + y, update) != part) return;
@@ -117,6 +117,7 @@ std::vector<UpdatePlace> block_samples_of(const PixelRect& rect, std::uint32_t p
 std::uint32_t parts_of(Update update) {
   switch (update) {
     case Update::kAll:
+    case Update::kWhole:
       return 1;
     case Update::kHalf:
       return 2;

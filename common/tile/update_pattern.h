@@ -13,8 +13,8 @@
 
 namespace goldthread {
 
-/// 1, 2 (a checkerboard's fields), 4 (the pixels of 2×2, diagonal ones first), or as many as a
-/// block has Poisson-disk samples.
+/// 1 (all pixels), 2 (a checkerboard's fields), 4 (the pixels of 2×2, diagonal ones first), or as
+/// many as a block has Poisson-disk samples.
 std::uint32_t parts_of(Update update);
 
 /// Edge of a block of frameless antialiasing, in pixels, and its samples: two in a pixel's area.

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <functional>
+#include <utility>
 #include <vector>
 
 namespace goldthread {
@@ -97,14 +98,14 @@ TEST(FramePolicy, AnOvertakenViewWaitsForADisplayThatIsNearerThanAnotherView) {
     });
   };
   expect_rules({
-      {"near", early(10ms, 7ms), Action::kRefine},
-      {"far: a newer view is as good by then", early(9ms, 7ms), Action::kSwitch},
-      {"there", early(9ms, 17ms), Action::kShowAndSwitch},
-      {"near, but nobody waits", with(early(10ms, 7ms), [](auto& s) { s.audience_ready = false; }),
+      {"near", early(5ms, 4ms), Action::kRefine},
+      {"far: a newer view is as good by then", early(4ms, 4ms), Action::kSwitch},
+      {"there", early(4ms, 9ms), Action::kShowAndSwitch},
+      {"near, but nobody waits", with(early(5ms, 4ms), [](auto& s) { s.audience_ready = false; }),
        Action::kSwitch},
       {"near, but the front is better",
-       with(early(10ms, 7ms), [](auto& s) { s.front->temporal_px = 1; }), Action::kSwitch},
-      {"near, but behind an edit", with(early(10ms, 7ms), [](auto& s) { s.back.edits_behind = 1; }),
+       with(early(5ms, 4ms), [](auto& s) { s.front->temporal_px = 1; }), Action::kSwitch},
+      {"near, but behind an edit", with(early(5ms, 4ms), [](auto& s) { s.back.edits_behind = 1; }),
        Action::kSwitch},
   });
 }
@@ -216,6 +217,27 @@ TEST(FramePolicy, WhateverTheStateItsPromisesHold) {
           << "what is shown is better than what was";
     }
   });
+}
+
+TEST(FramePolicy, AViewInMotionIsCastWholeIfThatIsFluid) {
+  EXPECT_EQ(update_in_motion(Update::kAll, {}), Update::kAll) << "nothing is known yet";
+  EXPECT_EQ(update_in_motion(Update::kAll, 16ms), Update::kWhole);
+  EXPECT_EQ(update_in_motion(Update::kAll, 17ms), Update::kAll);
+}
+
+TEST(FramePolicy, WhatAPageChoseIsCast) {
+  for (const Update chosen : {Update::kHalf, Update::kQuarter, Update::kFrameless})
+    EXPECT_EQ(update_in_motion(chosen, 1ms), chosen);
+}
+
+TEST(FramePolicy, AWholePictureIsExpectedToTakeLongerThanItsFirstSteps) {
+  // Thread times of the default head at 512²: steps 1 and 2, a ray in each pixel.
+  const std::pair<std::chrono::microseconds, std::chrono::microseconds> measured[] = {
+      {4700us, 41ms}, {21000us, 311ms}, {4100us, 43ms}, {2000us, 23ms}};
+  for (const auto& [coarse, whole] : measured) {
+    EXPECT_GE(whole_after(coarse), whole) << "at most: it must not come too late";
+    EXPECT_LE(whole_after(coarse), 2 * whole) << "or it would never be tried";
+  }
 }
 
 }  // namespace

@@ -57,7 +57,8 @@ class Restless {
     current_bands_ = 0;
     scene_.camera->position.x = 1 + below(1 << 20);
     colors_.push_back(color_of(*scene_.camera));
-    cluster_.begin_view(scene_, {kGrid, {}});
+    update_ = chance(0.5) ? Update::kWhole : Update::kAll;
+    cluster_.begin_view(scene_, {kGrid, {}, update_});
     ASSERT_EQ(cluster_.view().epoch.value + 1, colors_.size());
   }
 
@@ -102,7 +103,8 @@ class Restless {
   void poll(std::chrono::microseconds at_most) {
     const auto event = cluster_.poll(at_most);
     if (!event) return;
-    if (std::holds_alternative<StepCast>(*event)) cluster_.refine_further();
+    if (std::holds_alternative<StepCast>(*event) && update_ == Update::kAll)
+      cluster_.refine_further();
     if (const auto* band = std::get_if<BandPicture>(&*event)) look_at(*band);
   }
 
@@ -125,6 +127,7 @@ class Restless {
   Cluster& cluster_;
   Scene scene_;
   std::mt19937 random_{1};
+  Update update_ = Update::kAll;
   std::vector<Sample> colors_;  ///< by epoch
   std::vector<double> taken_;
   int bands_ = 0;

@@ -10,7 +10,7 @@ namespace {
 /// Before anything is learned: a centre sample is off by this share of its bend, as sure as if so
 /// many pixels had said so.
 constexpr double kFirstShare = 0.08;
-constexpr double kFirstPixels = 8;
+constexpr double kFirstPixels = 3;
 /// The samples that a pixel gets first, beyond the one in its centre.
 constexpr std::uint32_t kFirstSamples = 4;
 

@@ -36,6 +36,24 @@ class Methods : public testing::Test {
   MotionScene scene_;
 };
 
+TEST_F(Methods, AreHeldAgainstTheMeanOfEachPixel) {
+  const Camera camera = scene_.rest;
+  const std::vector<Color> pixels = true_picture(scene_, camera);
+  const auto source = make_ray_caster(scene_.committed, camera, scene_.image.size);
+  for (const auto& [x, y] : {std::pair{0, 0}, {48, 40}, {30, 33}, {95, 79}, {17, 64}}) {
+    std::vector<PixelPosition> positions;
+    for (int i = 0; i < 9; ++i)
+      positions.push_back(
+          {float(x) + (float(i % 3) + 0.5F) / 3, float(y) + (float(i / 3) + 0.5F) / 3});
+    std::vector<Sample> samples(positions.size());
+    source->cast(positions, samples);
+    const ShownPicture shown = shown_picture(samples, scene_.image, 0);
+    Color sum(0);
+    for (const Color& color : *shown.colors) sum += color;
+    EXPECT_LT(glm::distance(pixels[std::size_t(96 * y + x)], sum / 9.0), 1e-6) << x << " " << y;
+  }
+}
+
 TEST_F(Methods, ShowTheSceneItselfWhenTheCameraRests) {
   for (const auto& method : all_methods(scene_)) {
     double now = 0;

@@ -11,7 +11,8 @@
 namespace goldthread {
 namespace {
 
-constexpr Update kUpdates[] = {Update::kAll, Update::kHalf, Update::kQuarter, Update::kFrameless};
+constexpr Update kUpdates[] = {Update::kAll, Update::kHalf, Update::kQuarter, Update::kFrameless,
+                               Update::kWhole};
 const std::vector<PixelRect> kRects{{0, 0, 64, 64}, {64, 128, 17, 5}, {0, 4, 1, 1}};
 
 TEST(UpdatePattern, ThePartsTogetherHoldEachPlaceOnce) {
@@ -33,6 +34,7 @@ TEST(UpdatePattern, ThePartsTogetherHoldEachPlaceOnce) {
 TEST(UpdatePattern, PartsAreAsLargeAsTheirNameSays) {
   const PixelRect rect{0, 0, 64, 64};
   EXPECT_EQ(places_of(rect, Update::kAll, 0).size(), 64u * 64);
+  EXPECT_EQ(places_of(rect, Update::kWhole, 0).size(), 64u * 64);
   EXPECT_EQ(places_of(rect, Update::kHalf, 1).size(), 64u * 64 / 2);
   EXPECT_EQ(places_of(rect, Update::kQuarter, 3).size(), 64u * 64 / 4);
   EXPECT_EQ(places_of(rect, Update::kFrameless, 9).size(), 64u * 64 / 16);

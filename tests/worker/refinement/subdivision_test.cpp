@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <iterator>
 #include <set>
 #include <string_view>
 
@@ -243,6 +244,44 @@ TEST(Subdivision, ASurpriseSubdividesTheSquareThatHoldsIt) {
   const std::vector<SampleOffset> surprises{{19, 21}};
   EXPECT_EQ(chosen(tile, {0.5F, 1e9F, false}, surprises),
             (Places{{20, 16}, {16, 20}, {20, 20}, {24, 20}, {20, 24}}));
+}
+
+/// All pixels of the squares of `spacing` that hold one of `places`, but for those that are known.
+Places pixels_around(const Places& places, int spacing) {
+  Places pixels;
+  for (const SampleOffset place : places)
+    for (int y = 0; y < spacing; ++y)
+      for (int x = 0; x < spacing; ++x)
+        pixels.insert({static_cast<std::uint16_t>(place.x / spacing * spacing + x),
+                       static_cast<std::uint16_t>(place.y / spacing * spacing + y)});
+  std::erase_if(pixels, [](SampleOffset p) { return p.x % kCoarse == 0 && p.y % kCoarse == 0; });
+  return pixels;
+}
+
+TEST(Subdivision, AWholeSquareGetsAllOfItsPixels) {
+  Dice dice(6);
+  int in_all = 0;
+  for (int i = 0; i < 200; ++i) {
+    const Tile tile{random_picture(dice)};
+    const auto threshold = static_cast<float>(dice.between(0.05, 0.4));
+    const Places partial = chosen(tile, {threshold, 0.5F * threshold});
+    const Places whole = chosen(tile, {threshold, 0.5F * threshold, false, kCoarse});
+    EXPECT_EQ(whole, pixels_around(whole, kCoarse)) << i << ": nothing is left out";
+    // A square that is wanted at all is the one that has its centre wanted.
+    Places centres;
+    std::copy_if(partial.begin(), partial.end(), std::inserter(centres, centres.end()),
+                 [](SampleOffset p) { return p.x % kCoarse != 0 && p.y % kCoarse != 0; });
+    EXPECT_TRUE(includes(whole, pixels_around(centres, kCoarse))) << i;
+    in_all += static_cast<int>(whole.size());
+  }
+  EXPECT_GT(in_all, 200);
+}
+
+TEST(Subdivision, OfATilesEdgeAWholeSquareGetsWhatIsThere) {
+  const Tile tile{[](PixelPosition p) { return grey(p.x > 4 ? 1 : 0); }, {}, {0, 0, 13, 11}};
+  const Places whole = chosen(tile, {0.5F, 1e9F, false, kCoarse});
+  EXPECT_EQ(whole.size(), 8u * 11 - 2) << "the left squares without their corners";
+  for (const SampleOffset place : whole) EXPECT_TRUE(place.x < 8 && place.y < 11);
 }
 
 TEST(Subdivision, QuartersAreThoseOfSquaresInWhichSomethingIsKnown) {
