@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "common/scene/scene_file.h"
+#include "common/tile/setting_names.h"
 #include "master/names.h"
 #include "master/report.h"
 
@@ -58,40 +59,9 @@ Json rank_of(const Cluster& cluster, std::size_t i, const SessionPulse& pulse) {
           {"busy", busy},      {"tiles", rank.tiles}};
 }
 
-const char* name_of(Filter filter) {
-  switch (filter) {
-    case Filter::kBox:
-      return "box";
-    case Filter::kBilinear:
-      return "bilinear";
-    case Filter::kBiquadratic:
-      return "biquadratic";
-    case Filter::kPiecewiseQuadratic:
-      return "piecewise-quadratic";
-    case Filter::kBicubic:
-      return "bicubic";
-  }
-  return "";
-}
-
-const char* name_of(Update update) {
-  switch (update) {
-    case Update::kAll:
-    case Update::kWhole:
-      return "100";
-    case Update::kHalf:
-      return "50";
-    case Update::kQuarter:
-      return "25";
-    case Update::kFrameless:
-      return "frameless";
-  }
-  return "";
-}
-
 Json display_of(const DisplaySettings& display) {
-  return {{"filter", name_of(display.filter)},
-          {"update", name_of(display.update)},
+  return {{"filter", name_in(kFilterNames, display.filter)},
+          {"update", name_in(kUpdateNames, display.update)},
           {"cine", display.cine}};
 }
 

@@ -62,6 +62,7 @@ void write_motion_report(MotionReport& report, const std::filesystem::path& fold
     if (const std::string why = draw(plot, folder); !why.empty()) missing = why;
   if (!missing.empty())
     report.notes.push_back(fmt::format("no plots: {} (launch/peers installs gnuplot)", missing));
+  write_text(folder / "report.md", motion_markdown(report));
   write_text(folder / "report.json", motion_json(report));
 }
 

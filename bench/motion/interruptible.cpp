@@ -25,7 +25,7 @@ std::chrono::microseconds microseconds(double seconds) {
 class Interruptible : public MotionMethod {
  public:
   explicit Interruptible(const MotionScene& scene) : scene_(scene) {}
-  std::string name() const override { return "interruptible"; }
+  std::string name() const override { return kInterruptible; }
 
   WorkDone work(double now, const Camera& newest) override {
     if (!(newest == newest_)) last_input_ = now;

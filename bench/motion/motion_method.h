@@ -25,6 +25,9 @@ struct WorkDone {
   std::optional<ShownPicture> shown;  ///< on the screen when they have passed
 };
 
+/// The name of the method that the others are there to be compared with.
+inline constexpr const char* kInterruptible = "interruptible";
+
 class MotionMethod {
  public:
   virtual ~MotionMethod() = default;

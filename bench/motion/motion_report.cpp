@@ -72,11 +72,43 @@ Table motion_table(const MotionReport& report) {
   return table;
 }
 
+std::vector<std::string> motion_findings(const MotionReport& report) {
+  std::vector<std::string> findings;
+  for (const auto& [path, about] : report.paths) {
+    const MotionRow* best = nullptr;
+    const MotionRow* ours = nullptr;
+    for (const MotionRow& row : report.rows) {
+      if (row.path != path) continue;
+      if (row.method == kInterruptible) ours = &row;
+      if (best == nullptr || row.showing.mean_rms() < best->showing.mean_rms()) best = &row;
+    }
+    if (ours == nullptr) continue;
+    const double least = best->showing.mean_rms(), own = ours->showing.mean_rms();
+    findings.push_back(
+        best == ours
+            ? fmt::format("{}: {} has the least error, {}", path, ours->method, number(own))
+            : fmt::format("{}: the least is {}, {}; {} {} ({} times)", path, number(least),
+                          best->method, ours->method, number(own), number(own / least)));
+  }
+  return findings;
+}
+
+std::string motion_markdown(const MotionReport& report) {
+  std::string text = fmt::format("goldthread {}, {}; {}, {} threads; {}, {}, {}\n\n",
+                                 report.version, report.date, report.machine.processor,
+                                 report.threads, report.scene, subtitle_of(report), report.kernel);
+  text += as_markdown(motion_table(report)) + "\n";
+  for (const std::string& finding : motion_findings(report)) text += "- " + finding + "\n";
+  return text;
+}
+
 std::string motion_text(const MotionReport& report) {
   std::string text = fmt::format("Error while the camera moves: {}, {}, {} threads, {}\n",
                                  report.scene, subtitle_of(report), report.threads, report.kernel);
   for (const auto& [name, about] : report.paths) text += fmt::format("  {}: {}\n", name, about);
   text += fmt::format("\n{}", as_text(motion_table(report)));
+  text += "\n";
+  for (const std::string& finding : motion_findings(report)) text += finding + "\n";
   for (const std::string& note : report.notes) text += fmt::format("\n{}\n", note);
   return text;
 }

@@ -8,10 +8,12 @@
 #include <charconv>
 #include <cmath>
 #include <initializer_list>
+#include <span>
 #include <utility>
 #include <vector>
 
 #include "common/base/text.h"
+#include "common/tile/setting_names.h"
 
 namespace goldthread {
 namespace {
@@ -73,19 +75,24 @@ Outcome read_real(std::string_view text, double low, double high, double& value)
 }
 
 template <class Value>
-Outcome read_choice(std::string_view text,
-                    std::initializer_list<std::pair<std::string_view, Value>> known, Value& value) {
+Outcome read_choice(std::string_view text, std::span<const Named<Value>> known, Value& value) {
   std::vector<std::string_view> names;
   std::string list;
-  for (const auto& [name, meaning] : known) {
-    names.push_back(name);
-    list += (list.empty() ? "" : ", ") + std::string(name);
-    if (name != text) continue;
-    value = meaning;
+  for (const Named<Value>& named : known) {
+    names.push_back(named.name);
+    list += (list.empty() ? "" : ", ") + std::string(named.name);
+    if (named.name != text) continue;
+    value = named.value;
     return {};
   }
   return BadValue{fmt::format("{} is none of {}", quoted(text), list),
                   fmt::format("did you mean \"{}\"?", nearest_name(text, names))};
+}
+
+template <class Value>
+Outcome read_choice(std::string_view text, std::initializer_list<Named<Value>> known,
+                    Value& value) {
+  return read_choice(text, std::span<const Named<Value>>(known.begin(), known.size()), value);
 }
 
 // ---- What this version does not have yet: the whole list ----
@@ -122,30 +129,15 @@ Outcome apply_data(Options&, const std::string& text) {
 // ---- The others ----
 
 Outcome apply_sampling(Options& options, const std::string& text) {
-  return read_choice<Sampling>(text,
-                               {{"adaptive", Sampling::kAdaptive},
-                                {"subdivision", Sampling::kSubdivision},
-                                {"every-pixel", Sampling::kEveryPixel}},
-                               options.sampling);
+  return read_choice<Sampling>(text, std::span(kSamplingNames), options.sampling);
 }
 
 Outcome apply_filter(Options& options, const std::string& text) {
-  return read_choice<Filter>(text,
-                             {{"box", Filter::kBox},
-                              {"bilinear", Filter::kBilinear},
-                              {"biquadratic", Filter::kBiquadratic},
-                              {"piecewise-quadratic", Filter::kPiecewiseQuadratic},
-                              {"bicubic", Filter::kBicubic}},
-                             options.filter);
+  return read_choice<Filter>(text, std::span(kFilterNames), options.filter);
 }
 
 Outcome apply_update(Options& options, const std::string& text) {
-  return read_choice<Update>(text,
-                             {{"100", Update::kAll},
-                              {"50", Update::kHalf},
-                              {"25", Update::kQuarter},
-                              {"frameless", Update::kFrameless}},
-                             options.update);
+  return read_choice<Update>(text, std::span(kUpdateNames), options.update);
 }
 
 Outcome apply_size(Options& options, const std::string& text) {

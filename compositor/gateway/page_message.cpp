@@ -5,6 +5,8 @@
 #include <limits>
 #include <nlohmann/json.hpp>
 
+#include "common/tile/setting_names.h"
+
 namespace goldthread::page {
 namespace {
 
@@ -184,29 +186,6 @@ constexpr Decoder kDecoders[] = {{"hello", decode_hello},     {"camera", decode_
                                  {"display", decode_display}, {"drive", decode_drive},
                                  {"ack", decode_ack},         {"ping", decode_ping}};
 
-template <class T>
-struct Named {
-  std::string_view name;
-  T value;
-};
-constexpr Named<Filter> kFilters[] = {{"box", Filter::kBox},
-                                      {"bilinear", Filter::kBilinear},
-                                      {"biquadratic", Filter::kBiquadratic},
-                                      {"piecewise-quadratic", Filter::kPiecewiseQuadratic},
-                                      {"bicubic", Filter::kBicubic}};
-constexpr Named<Update> kUpdates[] = {{"100", Update::kAll},
-                                      {"50", Update::kHalf},
-                                      {"25", Update::kQuarter},
-                                      {"frameless", Update::kFrameless}};
-
-template <class T, std::size_t N>
-std::optional<T> value_of(const Named<T> (&table)[N], std::string_view name) {
-  for (const Named<T>& entry : table) {
-    if (entry.name == name) return entry.value;
-  }
-  return std::nullopt;
-}
-
 bool reachable(const glm::dvec3& point) {
   const auto near = [](double c) { return std::abs(c) <= kMaxCoordinate_mm; };
   return near(point.x) && near(point.y) && near(point.z);
@@ -256,12 +235,12 @@ std::optional<Failure> refusal(const Resize& resize) {
 }
 
 Result<DisplaySettings> settings_of(const Display& display) {
-  const std::optional<Filter> filter = value_of(kFilters, display.filter);
+  const std::optional<Filter> filter = value_in(kFilterNames, display.filter);
   if (!filter) {
     return Failure{"display.filter", "is unknown",
                    "choose box, bilinear, biquadratic, piecewise-quadratic or bicubic"};
   }
-  const std::optional<Update> update = value_of(kUpdates, display.update);
+  const std::optional<Update> update = value_in(kUpdateNames, display.update);
   if (!update) {
     return Failure{"display.update", "is unknown", "choose 100, 50, 25 or frameless"};
   }

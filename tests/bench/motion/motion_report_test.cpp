@@ -44,6 +44,19 @@ TEST(MotionReport, TheTableHasARowForEachPathAndMethod) {
                   testing::ElementsAre("jitter", "one", "8.00", "12.0", "60.0", "30.0")));
 }
 
+TEST(MotionReport, ItSaysWhereInterruptibleIsNotTheBest) {
+  MotionReport report = example();
+  EXPECT_TRUE(motion_findings(report).empty()) << "it was not measured";
+  report.rows.push_back({"slow orbit", kInterruptible, showing(2.5, 0.01)});
+  report.rows.push_back({"jitter", kInterruptible, showing(3, 0.01)});
+  EXPECT_THAT(
+      motion_findings(report),
+      testing::ElementsAre("slow orbit: the least is 2.00, one; interruptible 5.00 (2.50 times)",
+                           "jitter: interruptible has the least error, 6.00"));
+  EXPECT_THAT(motion_text(report), HasSubstr("the least is 2.00, one"));
+  EXPECT_THAT(motion_markdown(report), HasSubstr("- jitter: interruptible has"));
+}
+
 TEST(MotionReport, TheTextSaysWhatAFullFrameCosts) {
   EXPECT_THAT(motion_text(example()), HasSubstr("a scene, 256×128 pixels, a full frame in 100 ms"));
 }
