@@ -15,12 +15,16 @@ constexpr double kFarAway = 1e3;
 
 }  // namespace
 
-AgedBand::AgedBand(const TileGrid& grid, Band band, Update update)
-    : grid_(grid), band_(band), update_(update), rect_(band_rect(grid, band)) {
-  const auto columns = static_cast<std::uint32_t>(grid.columns());
+AgedBand::AgedBand(const BeginView& view, Band band)
+    : grid_(view.grid),
+      band_(band),
+      update_(view.update),
+      scene_revision_(view.scene_revision),
+      rect_(band_rect(grid_, band)) {
+  const auto columns = static_cast<std::uint32_t>(grid_.columns());
   for (auto i = static_cast<std::uint32_t>(band.first_row) * columns;
        i < static_cast<std::uint32_t>(band.last_row) * columns; ++i)
-    tiles_.emplace_back(grid.rect({i}), update);
+    tiles_.emplace_back(grid_.rect({i}), update_);
   placed_.resize(tiles_.size());
 }
 

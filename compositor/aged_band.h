@@ -13,10 +13,11 @@ namespace goldthread {
 
 class AgedBand {
  public:
-  AgedBand(const TileGrid& grid, Band band, Update update);
+  AgedBand(const BeginView& view, Band band);
 
-  bool fits(const TileGrid& grid, Update update) const {
-    return grid == grid_ && update == update_;
+  /// Whether samples of this band may stand beside those of `view`.
+  bool fits(const BeginView& view) const {
+    return view.grid == grid_ && view.update == update_ && view.scene_revision == scene_revision_;
   }
   /// A new view casts part `frame` of the samples, modulo the parts that there are.
   void begin_view(Epoch epoch, std::uint32_t frame);
@@ -35,6 +36,7 @@ class AgedBand {
   TileGrid grid_;
   Band band_;
   Update update_;
+  std::uint32_t scene_revision_;
   PixelRect rect_;
   std::vector<AgedSamples> tiles_;
   std::vector<Epoch> placed_;  ///< the view of each tile's newest part

@@ -36,8 +36,6 @@ struct Neighbour {
 };
 using Neighbours = std::vector<Neighbour>;
 
-int blocks_across(int pixels) { return (pixels + kFramelessBlock - 1) / kFramelessBlock; }
-
 Neighbours neighbours_of(int x, int y) {
   Neighbours result;
   const auto& pattern = frameless_pattern();

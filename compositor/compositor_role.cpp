@@ -67,8 +67,7 @@ void CompositorRole::on(const BeginView& message) {
   else
     samples_.emplace(view_->grid, band);
   if (in_parts()) {
-    if (!aged_ || !aged_->fits(view_->grid, view_->update))
-      aged_.emplace(view_->grid, band, view_->update);
+    if (!aged_ || !aged_->fits(*view_)) aged_.emplace(*view_, band);
     aged_->begin_view(view_->epoch, view_->frame);
   }
   told_step_ = kNoStep;

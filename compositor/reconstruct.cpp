@@ -17,6 +17,13 @@ void over(const Sample& sample, const Color& background, float* pixel) {
   pixel[3] = sample.alpha;
 }
 
+/// Where not even the coarsest samples are there, nothing can be filled in: what is in the places
+/// may be of another view.
+void empty_holes(std::span<Sample> samples, std::span<const std::uint8_t> known) {
+  for (std::size_t i = 0; i < samples.size(); ++i)
+    if (!known[i]) samples[i] = {};
+}
+
 }  // namespace
 
 void write_over(std::span<const Sample> samples, int stride, const PixelRect& rect,
@@ -38,7 +45,10 @@ std::vector<float> reconstruct(const SampleArray& samples, Filter filter,
   std::vector<Sample> filled;
   for (const TileSamples& tile : samples.tiles()) {
     filled.assign(tile.samples().begin(), tile.samples().end());
-    fill_holes({tile.stride(), tile.rows(), filled, tile.known()}, filter);
+    if (tile.known()[0])
+      fill_holes({tile.stride(), tile.rows(), filled, tile.known()}, filter);
+    else
+      empty_holes(filled, tile.known());
     write_over(filled, tile.stride(), tile.rect(), background, band, pixels);
   }
   return pixels;

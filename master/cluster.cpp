@@ -207,11 +207,16 @@ void Cluster::on(Rank, ViewTaken message) {
 void Cluster::on(Rank from, TileDone message) {
   const int worker = topology_.worker_index(from);
   if (message.epoch != view_.epoch || message.tile.value >= view_.grid.count()) return;
-  if (!scheduler_.done(worker, message.tile, message.to, message.quality.squared_error)) return;
+  const Finished finished =
+      scheduler_.done(worker, message.tile, message.to, message.quality.squared_error);
+  if (finished == Finished::kNot) return;
   supply(worker);
   costs_.record(message.tile, message.to, std::chrono::microseconds(message.cost_us));
-  view_.rays += message.rays;
-  view_.samples += message.samples;
+  // Rays are those of the picture, whoever cast them.
+  if (finished == Finished::kFirst) {
+    view_.rays += message.rays;
+    view_.samples += message.samples;
+  }
   ViewState::Tile& tile = view_.tiles[message.tile.value];
   tile.worker = from;
   tile.seconds += 1e-6 * message.cost_us;
@@ -280,8 +285,12 @@ void Cluster::lose(Rank rank) {
                       "look at that host's log, then start again", ExitStatus::kClusterFailed});
   }
   scheduler_.worker_lost(topology_.worker_index(rank));
+  // What it did of the open step is done again. Of an earlier one the compositors must have it all.
+  const Step cast = view_.cast();
+  const bool view_lost = view_.held < cast;
+  if (view_lost) scheduler_.cancel();
   for (int w = 0; w < topology_.workers; ++w) supply(w);
-  events_.push_back(WorkerLost{rank});
+  events_.push_back(WorkerLost{rank, view_lost});
 }
 
 void Cluster::send_to_workers(const ToWorker& message) {
@@ -307,16 +316,6 @@ std::optional<ClusterEvent> Cluster::poll(std::chrono::microseconds at_most) {
   ClusterEvent event = std::move(events_.front());
   events_.pop_front();
   return event;
-}
-
-std::chrono::microseconds Cluster::predict(Step step) const {
-  double total_us = 0;
-  for (std::uint32_t i = 0; i < view_.grid.count(); ++i) total_us += costs_.predict_us({i}, step);
-  int threads = 0;
-  for (const RankState& state : ranks_) {
-    if (state.role == Role::kWorker) threads += state.threads;
-  }
-  return std::chrono::microseconds(static_cast<std::int64_t>(total_us / std::max(1, threads)));
 }
 
 void Cluster::request_counters() {

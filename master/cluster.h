@@ -86,9 +86,11 @@ struct ViewState {
   }
 };
 
-/// A worker went silent; its tiles were given to the others.
+/// A worker went silent; its tiles were given to the others. Where it may have taken samples of an
+/// earlier step with it, the view is lost: nothing more of it is cast, it must begin anew.
 struct WorkerLost {
   Rank rank;
+  bool view_lost = false;
 };
 /// All tiles have taken the step that was open: what it is worth is known, another may be opened.
 struct StepCast {};
@@ -130,8 +132,6 @@ class Cluster {
   /// Asks every rank what it has sent and how long it computed; poll() takes the answers in.
   void request_counters();
   bool counters_complete() const;
-  /// Predicted time for the whole cluster to take the view through `step`.
-  std::chrono::microseconds predict(Step step) const;
 
   const ViewState& view() const { return view_; }
   const Topology& topology() const { return topology_; }

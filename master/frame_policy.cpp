@@ -20,7 +20,9 @@ bool worth_showing(const FrameState& state) {
 }
 
 bool worth_showing_final(const FrameState& state) {
-  if (!at_rest(state) || state.estimated_error > state.target_error) return false;
+  if (!at_rest(state)) return false;
+  if (state.enough && !state.final_error) return true;
+  if (state.estimated_error > state.target_error) return false;
   return !state.final_error || state.estimated_error < kWorthShowingFinal * *state.final_error;
 }
 

@@ -33,6 +33,7 @@ struct FrameState {
   PictureErrors back;
   double estimated_error = 0;         ///< of the back's colours, RMS in 1/255
   double target_error = 0;            ///< what is good enough to be shown without loss
+  bool enough = false;                ///< no further step is wanted, whatever the error
   std::optional<double> final_error;  ///< estimated_error when the back was shown without loss
   std::chrono::microseconds since_begun{0};  ///< that the back is refined
   std::chrono::microseconds since_input{0};

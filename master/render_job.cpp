@@ -31,8 +31,8 @@ double progress_of(const ViewState& view, const StopRule& rule) {
   return std::clamp(std::max(by_rays, by_error), 0.0, 1.0);
 }
 
-/// Whether steps bring no rays any more, since each pixel has as many as it may have. Every pixel
-/// is probed well before this step; single steps without rays there may be at any time.
+/// Whether several steps in turn brought no rays: each pixel has as many as it may have. Every
+/// pixel is probed well before this step; single steps without rays there may be at any time.
 bool is_exhausted(const ViewState& view) {
   constexpr std::size_t kAllProbed = 18, kInVain = 3;
   const std::size_t count = view.steps.size();
@@ -41,17 +41,26 @@ bool is_exhausted(const ViewState& view) {
 }
 
 /// Refines until the rule or the time says stop, and the compositors hold it all.
-void cast_view(Cluster& cluster, const RenderRequest& request) {
+void cast_view(Cluster& cluster, const Scene& scene, const RenderRequest& request) {
+  const auto begin_view = [&] {
+    cluster.begin_view(scene, {request.grid, refinement_of(request.stop)});
+  };
+  begin_view();
   const ViewState& view = cluster.view();
+  const auto begin = view.begin;
   const auto time_is_up = [&] {
-    return request.time && view.held > kNoStep && Clock::now() - view.begin >= *request.time;
+    return request.time && view.held > kNoStep && Clock::now() - begin >= *request.time;
   };
   bool enough = false;
   while (!(enough && view.held == view.cast()) && !time_is_up()) {
     const auto event = cluster.poll(kPollTime);
     check_interrupted(request);
     if (!event) continue;
-    if (const auto* lost = std::get_if<WorkerLost>(&*event)) request.worker_lost(lost->rank);
+    if (const auto* lost = std::get_if<WorkerLost>(&*event)) {
+      request.worker_lost(lost->rank);
+      if (lost->view_lost) begin_view();
+      enough = enough && !lost->view_lost;
+    }
     if (!std::holds_alternative<StepCast>(*event)) continue;
     request.progress(progress_of(view, request.stop));
     const StepState& last = view.steps.back();
@@ -91,8 +100,7 @@ void collect(Cluster& cluster, const RenderRequest& request, RenderedFrame& fram
 }  // namespace
 
 RenderedFrame render_frame(Cluster& cluster, const Scene& scene, const RenderRequest& request) {
-  cluster.begin_view(scene, {request.grid, refinement_of(request.stop)});
-  cast_view(cluster, request);
+  cast_view(cluster, scene, request);
   RenderedFrame frame;
   frame.size = request.grid.image;
   frame.rgba.resize(4 * static_cast<std::size_t>(frame.size.width) *

@@ -45,6 +45,8 @@ void Scheduler::queue(const CostHistory& costs) {
   std::vector<double> urgency(tiles_.size());
   for (std::uint32_t i = 0; i < tiles_.size(); ++i) {
     Tile& tile = tiles_[i];
+    tile.done_by = -1;
+    tile.again = false;
     tile.cost_us = costs.predict_us({i}, step_);
     tile.all_cost_us = costs.predict_all_us({i}, step_);
     // Errors are sums over the tile: its area is in them.
@@ -105,19 +107,37 @@ std::optional<Quantum> Scheduler::next(int worker) {
   return Quantum{*tile, Step{static_cast<std::uint16_t>(step_.value - 1)}, step_};
 }
 
-bool Scheduler::done(int worker, TileId tile, Step to, double squared_error) {
+Finished Scheduler::done(int worker, TileId tile, Step to, double squared_error) {
   auto& held = workers_.at(static_cast<std::size_t>(worker)).held;
   const auto found = std::find(held.begin(), held.end(), tile);
-  if (found == held.end() || to != step_) return false;
+  if (found == held.end() || to != step_) return Finished::kNot;
   held.erase(found);
-  tiles_[tile.value].squared_error = squared_error;
+  Tile& finished = tiles_[tile.value];
+  finished.squared_error = squared_error;
+  finished.done_by = worker;
   --open_;
-  return true;
+  return finished.again ? Finished::kAgain : Finished::kFirst;
+}
+
+std::vector<TileId> Scheduler::take_back(int worker) {
+  std::vector<TileId> again;
+  if (finished()) return again;
+  for (std::uint32_t i = 0; i < tiles_.size(); ++i) {
+    Tile& tile = tiles_[i];
+    if (tile.done_by != worker) continue;
+    tile.done_by = -1;
+    tile.again = true;
+    again.push_back({i});
+  }
+  open_ += again.size();
+  return again;
 }
 
 void Scheduler::worker_lost(int worker) {
   Worker& lost = workers_.at(static_cast<std::size_t>(worker));
   lost.lost = true;
+  const auto again = take_back(worker);
+  unowned_.insert(unowned_.begin(), again.begin(), again.end());
   unowned_.insert(unowned_.begin(), lost.waiting.begin(), lost.waiting.end());
   unowned_.insert(unowned_.begin(), lost.held.begin(), lost.held.end());
   lost.held.clear();

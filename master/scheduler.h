@@ -5,7 +5,9 @@
 // step of a view descending predicted cost (longest first), after that descending (estimated error
 // × area) / predicted cost. A tile stays with the worker that holds its state; a worker with
 // nothing left takes over another's where casting the earlier steps again is quicker than waiting.
-// Pure: no clock, no transport. Invariant: each (tile, step) of a view is counted as done once.
+// What a lost worker has done of the open step is done again: its samples may have gone with it.
+// Pure: no clock, no transport. Invariant: each (tile, step) of a view is done for the first time
+// once.
 
 #include <cstdint>
 #include <deque>
@@ -25,6 +27,13 @@ struct Quantum {
   bool operator==(const Quantum&) const = default;
 };
 
+/// What became of a quantum that a worker says it has finished.
+enum class Finished : std::uint8_t {
+  kNot,    ///< the worker did not hold it
+  kAgain,  ///< as it was before, by a worker that was lost since
+  kFirst
+};
+
 class Scheduler {
  public:
   /// `capacity[w]`: how many quanta worker w may hold at once, its spare one included.
@@ -39,10 +48,11 @@ class Scheduler {
 
   /// The next quantum for `worker`, if it has room and there is work.
   std::optional<Quantum> next(int worker);
-  /// `worker` has finished a quantum; anything it does not hold is ignored. True if it was held.
-  /// `squared_error` is the tile's, summed over its pixels.
-  bool done(int worker, TileId tile, Step to, double squared_error);
-  /// What `worker` held is given out again, first of all; it gets nothing any more.
+  /// `worker` has finished a quantum; anything it does not hold is ignored. `squared_error` is the
+  /// tile's, summed over its pixels.
+  Finished done(int worker, TileId tile, Step to, double squared_error);
+  /// What `worker` held, and what it has done of a step that is still open, is given out again,
+  /// first of all; it gets nothing any more.
   void worker_lost(int worker);
 
   /// The step that is open.
@@ -60,7 +70,9 @@ class Scheduler {
     double waiting_us = 0;
   };
   struct Tile {
-    int owner = -1;  ///< worker that holds its state
+    int owner = -1;      ///< worker that holds its state
+    int done_by = -1;    ///< that did the open step
+    bool again = false;  ///< the open step was done before, by a lost worker
     double squared_error = 0;
     double cost_us = 0;      ///< predicted, of the open step
     double all_cost_us = 0;  ///< of this and all earlier steps: what a newcomer would spend
@@ -68,6 +80,8 @@ class Scheduler {
   void queue(const CostHistory& costs);
   std::optional<TileId> take(int worker);
   std::optional<TileId> take_over(int worker);
+  /// What `worker` has done of the open step, which is not done any more.
+  std::vector<TileId> take_back(int worker);
 
   std::vector<Worker> workers_;
   std::vector<Tile> tiles_;

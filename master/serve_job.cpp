@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "master/serve_job.h"
 
+#include <algorithm>
 #include <utility>
 
 #include "common/scene/camera.h"
@@ -85,10 +86,12 @@ void ServeJob::on(const StepCast&) {
   if (update_ != Update::kAll) return;  // its one step
   const ViewState& view = cluster_.view();
   const double error = rms_error(view.steps.back().quality.squared_error, view.pixels());
+  // Something was found that was not known of when the picture was called final.
+  if (final_error_) final_error_ = std::max(*final_error_, error);
   const double wanted = final_error_ ? kWorthShowingFinal * *final_error_ : request_.stop.error;
-  paused_ = is_enough({request_.stop.sampling, wanted, request_.stop.samples}, view.cast(),
-                      view.steps.back().quality, view.steps.back().rays, view.pixels()) ||
-            error < wanted;
+  paused_ =
+      again_ || is_enough({request_.stop.sampling, wanted, request_.stop.samples}, view.cast(),
+                          view.steps.back().quality, view.steps.back().rays, view.pixels());
   if (!paused_) cluster_.refine_further();
 }
 
@@ -101,7 +104,10 @@ void ServeJob::on(const StepHeld&) {
   if (update_ == Update::kAll && view.held == Step{2}) whole_ = whole_after(held);
 }
 
-void ServeJob::on(const WorkerLost& event) { request_.worker_lost(event.rank); }
+void ServeJob::on(const WorkerLost& event) {
+  request_.worker_lost(event.rank);
+  if (event.view_lost) cast(back_.camera);
+}
 
 void ServeJob::on(const GatewayOpened& event) {
   open_ = true;
@@ -150,6 +156,7 @@ void ServeJob::on(const ViewerSize& event) {
   scene_.image.size = event.size;
   note_input(event.viewer, event.serial);
   reshow_ = true;  // what is there serves until there is better
+  if (!cine_.idle()) want_view(false);
   if (covers_size()) {
     to_pages(Broadcast{view_message(*scene_.camera, scene_.image.size)});
     return;
@@ -159,11 +166,10 @@ void ServeJob::on(const ViewerSize& event) {
 }
 
 void ServeJob::on(const ViewerDisplay& event) {
-  const bool ends_cine = !event.display.cine && !cine_.idle();
   reshow_ = reshow_ || event.display.filter != request_.display.filter;
   request_.display = event.display;
   note_input(event.viewer, event.serial);
-  if (ends_cine) want_view(false);
+  if (!cine_.idle()) want_view(false);
   to_pages(Broadcast{display_message(event.display, event.viewer, event.serial)});
   say_welcome();
 }
@@ -180,6 +186,13 @@ double ServeJob::spatial_px() const {
   const StepState* shown = cluster_.view().shown();
   if (shown == nullptr) return kLargestSpatialErrorPx;
   return spatial_error_px(shown->quality.squared_error, shown->quality.squared_gradient);
+}
+
+/// Pixel centres, some of them where they were in the oldest part.
+double ServeJob::spatial_px_of_parts() const {
+  double moved = 0;
+  for (const ViewMovement& part : movements()) moved = std::max(moved, double(part.pixels));
+  return kCentresPx + kShiftOfMovement * moved;
 }
 
 PictureErrors ServeJob::errors_of(const Shown& picture) const {
@@ -199,11 +212,15 @@ FrameState ServeJob::frame_state() const {
   state.has_picture = has_picture();
   state.shown = front_ && front_->epoch == cluster_.view().epoch;
   if (front_) state.front = errors_of(*front_);
+  // It does not become better where it is.
+  if (state.shown && update_ != Update::kAll) state.front->spatial_px = 0;
   Shown back = back_;
   back.spatial_px = spatial_px();
   state.back = errors_of(back);
   // What is updated in parts, or cast for a moment, is never finished.
-  state.estimated_error = update_ == Update::kAll ? estimated_error(cluster_.view()) : 255;
+  const bool is_known = update_ == Update::kAll && cluster_.view().held >= kFirstAdaptiveStep;
+  state.estimated_error = is_known ? estimated_error(cluster_.view()) : 255;
+  state.enough = paused_ && cluster_.view().held == cluster_.view().cast();
   state.target_error = request_.stop.error;
   state.final_error = final_error_;
   state.since_begun = since(cluster_.view().begin);
@@ -214,11 +231,9 @@ FrameState ServeJob::frame_state() const {
 
 void ServeJob::act() {
   if (!cine_.idle() && !waiting_.any) return advance_cine();
-  if (update_ != Update::kAll && !is_moving()) want_view(false);
-  if (reshow_ && audience_ready_ && has_picture() && front_) {
-    show(final_error_.has_value());
-    reshow_ = false;
-  }
+  if (update_ != Update::kAll && (!is_moving() || (has_picture() && !is_settled())))
+    want_view(false);
+  reshow();
   switch (decide(frame_state())) {
     case FrameAction::kRefine:
       return;
@@ -237,9 +252,31 @@ void ServeJob::act() {
   }
 }
 
+/// What was final is again once the step that has begun since is whole.
+void ServeJob::reshow() {
+  if (!audience_ready_ || !has_picture() || !front_) return;
+  if (reshow_) {
+    again_ = again_ || final_error_;
+    show(false);
+    reshow_ = false;
+  } else if (again_ && paused_ && cluster_.view().held == cluster_.view().cast()) {
+    again_ = false;
+    show(true);
+  }
+}
+
+bool ServeJob::is_settled() const {
+  return parts_.size() == parts_of(update_) &&
+         std::all_of(parts_.begin(), parts_.end(), [&](const Shown& part) {
+           return part.camera == *scene_.camera && part.edits == edits_;
+         });
+}
+
 void ServeJob::advance_cine() {
   if (!cine_.frame() || !audience_ready_ || !has_picture()) return;
-  if (estimated_error(cluster_.view()) > request_.stop.error) return;
+  const ViewState& view = cluster_.view();
+  const bool is_enough = paused_ && view.held == view.cast();
+  if (!is_enough && estimated_error(view) > request_.stop.error) return;
   show(false);
   cine_.frame_done();
   if (cine_.frame()) cast(cine_.camera());
@@ -260,14 +297,15 @@ void ServeJob::cast(const Camera& camera) {
   viewer_ = newest_viewer_;
   serial_ = newest_serial_;
   final_error_.reset();
-  paused_ = false;
+  paused_ = again_ = false;
   back_ = {camera, edits_, {}, kLargestSpatialErrorPx};
   Scene scene = scene_;
   scene.camera = camera;
+  const TileGrid grid = request_.grid(scene_.image.size);
+  if (grid != cluster_.view().grid) whole_.reset();
   const bool moving = is_moving() && cine_.idle();
   update_ = moving ? update_in_motion(request_.display.update, whole_) : Update::kAll;
-  cluster_.begin_view(scene, {request_.grid(scene_.image.size), refinement_of(request_.stop),
-                              update_, moving_frame_++});
+  cluster_.begin_view(scene, {grid, refinement_of(request_.stop), update_, moving_frame_++});
   back_.epoch = cluster_.view().epoch;
   if (update_ == Update::kAll) return;
   parts_.push_back(back_);
@@ -305,7 +343,7 @@ void ServeJob::show(bool final) {
   for (int c = 0; c < cluster_.topology().compositors; ++c)
     cluster_.post().to_compositor(cluster_.topology().compositor(c), present);
   front_ = back_;
-  front_->spatial_px = update_ == Update::kWhole ? kCentresPx : spatial_px();
+  front_->spatial_px = update_ == Update::kAll ? spatial_px() : spatial_px_of_parts();
   if (final) {
     final_error_ = estimated_error(view);
     if (std::exchange(paused_, false)) cluster_.refine_further();

@@ -74,6 +74,7 @@ class ServeJob {
   void begin_view();
   void cast(const Camera& camera);
   void show(bool final);
+  void reshow();
   void advance_cine();
   void tell_status();
   const char* phase() const;
@@ -84,6 +85,9 @@ class ServeJob {
   FrameState frame_state() const;
   PictureErrors errors_of(const Shown& picture) const;
   double spatial_px() const;
+  double spatial_px_of_parts() const;
+  /// Whether all parts of an update are of the newest camera and scene.
+  bool is_settled() const;
   std::vector<ViewMovement> movements() const;
   void to_pages(ToCompositor message);
   void commit();
@@ -112,6 +116,7 @@ class ServeJob {
   bool paused_ = false;      ///< the next step is opened once the picture has been shown
   bool audience_ready_ = false;
   bool reshow_ = false;  ///< the same samples are wanted in another form
+  bool again_ = false;   ///< and that without loss, from a whole step
   std::uint32_t moving_frame_ = 0;
   CineLoop cine_;
   std::uint32_t picture_ = 0;

@@ -104,6 +104,8 @@ class Interruptible : public MotionMethod {
     state.audience_ready = true;
     state.shown = shown_;
     if (front_) state.front = PictureErrors{0, front_->spatial_px, lateness(front_->camera)};
+    // It does not become better where it is.
+    if (whole_ && shown_) state.front->spatial_px = 0;
     state.has_picture = whole_ || view_->step() > kNoStep;
     // What is cast whole is never finished.
     state.estimated_error = 255;

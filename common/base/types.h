@@ -13,7 +13,6 @@ namespace goldthread {
 struct Epoch {
   std::uint32_t value = 0;
   auto operator<=>(const Epoch&) const = default;
-  Epoch next() const { return {value + 1}; }
   static constexpr auto fields() { return std::tuple{&Epoch::value}; }
 };
 

@@ -72,8 +72,6 @@ std::uint32_t part_of_pixel(int x, int y, Update update) {
   return kParts[y % 2][x % 2];
 }
 
-int blocks_across(int pixels) { return (pixels + kFramelessBlock - 1) / kFramelessBlock; }
-
 /// Calls visit(x, y) for each cell of a rectangle that begins at 0, in blocks.
 template <class Visit>
 void in_blocks(int width, int height, int block_width, int block_height, Visit visit) {

@@ -20,6 +20,8 @@ std::uint32_t parts_of(Update update);
 /// Edge of a block of frameless antialiasing, in pixels, and its samples: two in a pixel's area.
 constexpr int kFramelessBlock = 4;
 constexpr std::uint32_t kFramelessSamples = 32;
+/// How many blocks cover so many pixels.
+constexpr int blocks_across(int pixels) { return (pixels + kFramelessBlock - 1) / kFramelessBlock; }
 
 /// The samples of a block in pixels from its corner, in the order in which they were chosen: each
 /// next one the farthest of many candidates from all before, on a torus (Mitchell 1991, "Spectrally

@@ -28,6 +28,24 @@ Samples part(Epoch epoch, std::uint32_t tile, Update update, std::uint32_t numbe
   return message;
 }
 
+BeginView view_of(Update update, std::uint32_t scene_revision = 1) {
+  BeginView view;
+  view.grid = kGrid;
+  view.update = update;
+  view.scene_revision = scene_revision;
+  return view;
+}
+
+TEST(AgedBand, FitsViewsOfTheSameSceneThatAreCutAndUpdatedAlike) {
+  const AgedBand band(view_of(Update::kHalf), kAll);
+  EXPECT_TRUE(band.fits(view_of(Update::kHalf)));
+  EXPECT_FALSE(band.fits(view_of(Update::kQuarter)));
+  EXPECT_FALSE(band.fits(view_of(Update::kHalf, 2))) << "colours of another scene";
+  BeginView larger = view_of(Update::kHalf);
+  larger.grid.image.width += 1;
+  EXPECT_FALSE(band.fits(larger));
+}
+
 void place_view(AgedBand& band, Epoch epoch, Update update, std::uint32_t frame, float grey) {
   band.begin_view(epoch, frame);
   for (const std::uint32_t tile : {0U, 1U})
@@ -35,7 +53,7 @@ void place_view(AgedBand& band, Epoch epoch, Update update, std::uint32_t frame,
 }
 
 TEST(AgedBand, IsCompleteWhenAllItsTilesPartsAreThere) {
-  AgedBand band(kGrid, kAll, Update::kHalf);
+  AgedBand band(view_of(Update::kHalf), kAll);
   band.begin_view({1}, 0);
   EXPECT_FALSE(band.complete());
   EXPECT_TRUE(band.place(part({1}, 0, Update::kHalf, 0, 0.5F)));
@@ -46,7 +64,7 @@ TEST(AgedBand, IsCompleteWhenAllItsTilesPartsAreThere) {
 }
 
 TEST(AgedBand, ShowsThePartsOfOlderViewsBesideTheNewestInPartialUpdating) {
-  AgedBand band(kGrid, kAll, Update::kHalf);
+  AgedBand band(view_of(Update::kHalf), kAll);
   place_view(band, {1}, Update::kHalf, 0, 0.25F);
   place_view(band, {2}, Update::kHalf, 1, 0.75F);
   const auto pixels = band.picture(std::vector<ViewMovement>{{{1}, 50}}, {0, 0, 0});
@@ -60,7 +78,7 @@ TEST(AgedBand, ShowsThePartsOfOlderViewsBesideTheNewestInPartialUpdating) {
 }
 
 TEST(AgedBand, FadesWhatHasMovedAwayInFramelessAntialiasing) {
-  AgedBand band(kGrid, kAll, Update::kFrameless);
+  AgedBand band(view_of(Update::kFrameless), kAll);
   for (std::uint32_t frame = 0; frame < kFramelessSamples; ++frame)
     place_view(band, {frame + 1}, Update::kFrameless, frame, 0);
   for (std::uint32_t frame = 0; frame < 8; ++frame)
@@ -83,7 +101,7 @@ TEST(AgedBand, FadesWhatHasMovedAwayInFramelessAntialiasing) {
 }
 
 TEST(AgedBand, RefusesWhatIsNotItsPart) {
-  AgedBand band(kGrid, kAll, Update::kQuarter);
+  AgedBand band(view_of(Update::kQuarter), kAll);
   band.begin_view({1}, 2);
   EXPECT_FALSE(band.place(Samples{{1}, {7}, kNoStep, {1}, 0, {}}));
   Samples short_one = part({1}, 0, Update::kQuarter, 2, 0);

@@ -219,6 +219,15 @@ TEST(FramePolicy, WhateverTheStateItsPromisesHold) {
   });
 }
 
+TEST(FramePolicy, WhatIsRefinedNoFurtherIsFinalWhateverItsError) {
+  const FrameState state = with(resting(1, 1, 5), [](auto& s) { s.enough = true; });
+  expect_rules({
+      {"samples are used up", state, Action::kShowFinal},
+      {"and were shown", with(state, [](auto& s) { s.final_error = 5; }), Action::kRefine},
+      {"in a movement", with(state, [](auto& s) { s.since_input = 1ms; }), Action::kRefine},
+  });
+}
+
 TEST(FramePolicy, AViewInMotionIsCastWholeIfThatIsFluid) {
   EXPECT_EQ(update_in_motion(Update::kAll, {}), Update::kAll) << "nothing is known yet";
   EXPECT_EQ(update_in_motion(Update::kAll, 16ms), Update::kWhole);

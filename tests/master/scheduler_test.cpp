@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <map>
 #include <numeric>
 #include <optional>
 #include <queue>
@@ -54,7 +55,7 @@ std::vector<std::uint32_t> taken_by(Scheduler& scheduler, int worker) {
 void finish(Scheduler& scheduler, int worker, const std::vector<std::uint32_t>& tiles,
             double squared_error = 1) {
   for (const std::uint32_t tile : tiles)
-    ASSERT_TRUE(scheduler.done(worker, {tile}, scheduler.step(), squared_error));
+    ASSERT_EQ(Finished::kFirst, scheduler.done(worker, {tile}, scheduler.step(), squared_error));
 }
 
 /// All that `worker` is given until there is nothing left for it, each finished before the next.
@@ -62,7 +63,7 @@ std::vector<std::uint32_t> worked_off_by(Scheduler& scheduler, int worker) {
   std::vector<std::uint32_t> tiles;
   while (const auto quantum = scheduler.next(worker)) {
     tiles.push_back(quantum->tile.value);
-    EXPECT_TRUE(scheduler.done(worker, quantum->tile, quantum->to, 1));
+    EXPECT_EQ(Finished::kFirst, scheduler.done(worker, quantum->tile, quantum->to, 1));
   }
   return tiles;
 }
@@ -110,7 +111,7 @@ TEST(Scheduler, GivesOutDescendingErrorPerCostAtLaterSteps) {
       }
       // The next step goes by what this one has left.
       errors[tile] = step == kFirst ? errors[tile] : errors[tile] / (1 + tile % 7);
-      ASSERT_TRUE(scheduler.done(0, {tile}, step, errors[tile]));
+      ASSERT_EQ(Finished::kFirst, scheduler.done(0, {tile}, step, errors[tile]));
     }
     ASSERT_TRUE(scheduler.finished());
     scheduler.open_step(costs);
@@ -128,7 +129,7 @@ TEST(Scheduler, OpensEachStepWithAllTilesAndCountsThemDone) {
       ASSERT_TRUE(quantum);
       EXPECT_EQ(quantum->from.next(), step);
       EXPECT_EQ(quantum->to, step);
-      ASSERT_TRUE(scheduler.done(0, quantum->tile, quantum->to, 1));
+      ASSERT_EQ(Finished::kFirst, scheduler.done(0, quantum->tile, quantum->to, 1));
     }
     EXPECT_TRUE(scheduler.finished());
     EXPECT_FALSE(scheduler.next(0)) << "the next step is not open yet";
@@ -143,7 +144,7 @@ TEST(Scheduler, GivesAWorkerNoMoreThanItsCapacity) {
   EXPECT_TRUE(second);
   EXPECT_FALSE(scheduler.next(0));
   EXPECT_FALSE(scheduler.next(1));
-  EXPECT_TRUE(scheduler.done(0, second->tile, second->to, 1));
+  EXPECT_EQ(Finished::kFirst, scheduler.done(0, second->tile, second->to, 1));
   EXPECT_TRUE(scheduler.next(0));
   EXPECT_FALSE(scheduler.next(0));
 }
@@ -151,13 +152,13 @@ TEST(Scheduler, GivesAWorkerNoMoreThanItsCapacity) {
 TEST(Scheduler, IgnoresWhatAWorkerDoesNotHold) {
   Scheduler scheduler = begun({2, 2}, row_of(4));
   const Quantum held = *scheduler.next(0);
-  EXPECT_FALSE(scheduler.done(1, held.tile, held.to, 1)) << "another worker's";
-  EXPECT_FALSE(scheduler.done(0, held.tile, kSecond, 1)) << "another step";
-  EXPECT_FALSE(scheduler.done(0, held.tile, kNoStep, 1)) << "no step";
-  EXPECT_FALSE(scheduler.done(0, {99}, held.to, 1)) << "no such tile";
+  EXPECT_EQ(Finished::kNot, scheduler.done(1, held.tile, held.to, 1)) << "another worker's";
+  EXPECT_EQ(Finished::kNot, scheduler.done(0, held.tile, kSecond, 1)) << "another step";
+  EXPECT_EQ(Finished::kNot, scheduler.done(0, held.tile, kNoStep, 1)) << "no step";
+  EXPECT_EQ(Finished::kNot, scheduler.done(0, {99}, held.to, 1)) << "no such tile";
   EXPECT_EQ(scheduler.open(), 4u);
-  EXPECT_TRUE(scheduler.done(0, held.tile, held.to, 1));
-  EXPECT_FALSE(scheduler.done(0, held.tile, held.to, 1)) << "a second time";
+  EXPECT_EQ(Finished::kFirst, scheduler.done(0, held.tile, held.to, 1));
+  EXPECT_EQ(Finished::kNot, scheduler.done(0, held.tile, held.to, 1)) << "a second time";
   EXPECT_EQ(scheduler.open(), 3u);
 }
 
@@ -167,7 +168,8 @@ TEST(Scheduler, ForgetsTheOldViewWhenANewOneBegins) {
   scheduler.begin_view(row_of(2), {});
   EXPECT_EQ(scheduler.step(), kFirst);
   EXPECT_EQ(scheduler.open(), 2u);
-  EXPECT_FALSE(scheduler.done(0, old.tile, old.to, 1)) << "in flight from the old view";
+  EXPECT_EQ(Finished::kNot, scheduler.done(0, old.tile, old.to, 1))
+      << "in flight from the old view";
   EXPECT_EQ(taken_by(scheduler, 1), (Tiles{0, 1})) << "and nobody's any more";
 }
 
@@ -181,7 +183,7 @@ TEST(Scheduler, GivesOutNothingWithoutAViewOrOfOneThatIsCancelled) {
   scheduler.cancel();
   EXPECT_TRUE(scheduler.finished());
   EXPECT_FALSE(scheduler.next(0));
-  EXPECT_FALSE(scheduler.done(0, held.tile, held.to, 1));
+  EXPECT_EQ(Finished::kNot, scheduler.done(0, held.tile, held.to, 1));
 }
 
 TEST(Scheduler, LeavesATileWithTheWorkerThatHoldsItsState) {
@@ -249,7 +251,8 @@ TEST(Scheduler, GivesALostWorkersTilesOutAgainFirstAndOnce) {
   ASSERT_TRUE(scheduler.next(1));
   scheduler.worker_lost(0);
   EXPECT_FALSE(scheduler.next(0)) << "the dead get nothing";
-  EXPECT_FALSE(scheduler.done(0, {lost[0]}, kFirst, 1)) << "nor does what they send count";
+  EXPECT_EQ(Finished::kNot, scheduler.done(0, {lost[0]}, kFirst, 1))
+      << "nor does what they send count";
   EXPECT_EQ(taken_by(scheduler, 1), (Tiles{0, 1, 2, 4, 5, 6, 7, 8, 9}));
   EXPECT_EQ(scheduler.open(), 10u);
 }
@@ -264,13 +267,25 @@ TEST(Scheduler, GivesOutWhatALostWorkerHeldBeforeWhatWaitedForIt) {
   EXPECT_EQ(taken_by(scheduler, 1), (Tiles{0, 1, 2, 3, 4, 5}));
 }
 
+TEST(Scheduler, HasWhatALostWorkerDidOfTheOpenStepDoneAgain) {
+  Scheduler scheduler = begun({3, 6}, row_of(7));
+  const Tiles own = taken_by(scheduler, 0);
+  finish(scheduler, 0, {own[0], own[1]});
+  EXPECT_EQ(scheduler.open(), 5u);
+  scheduler.worker_lost(0);
+  EXPECT_EQ(scheduler.open(), 7u) << "its samples may not have arrived";
+  EXPECT_EQ(taken_by(scheduler, 1), (Tiles{2, 0, 1, 3, 4, 5})) << "after what it held";
+  EXPECT_EQ(Finished::kAgain, scheduler.done(1, {0}, kFirst, 1));
+  EXPECT_EQ(Finished::kFirst, scheduler.done(1, {2}, kFirst, 1));
+}
+
 TEST(Scheduler, ForgetsThatALostWorkerHeldTheStateOfATile) {
   Scheduler scheduler = begun({3, 3}, row_of(6));
   const Tiles own = taken_by(scheduler, 0), others = taken_by(scheduler, 1);
   finish(scheduler, 0, own);
-  scheduler.worker_lost(0);
   finish(scheduler, 1, others);
-  EXPECT_TRUE(scheduler.finished()) << "what it had done counts";
+  scheduler.worker_lost(0);
+  EXPECT_TRUE(scheduler.finished()) << "a step that was finished remains so";
   scheduler.open_step({});
   EXPECT_EQ(worked_off_by(scheduler, 1).size(), 6u);
 }
@@ -305,6 +320,7 @@ class RandomRun {
       if (step < kSteps) scheduler_->open_step(costs_);
       done_.clear();
       given_.clear();
+      again_.clear();
     }
   }
 
@@ -364,9 +380,11 @@ class RandomRun {
     const auto at = static_cast<std::size_t>(uniform(0, int(held_[worker].size()) - 1));
     const Quantum quantum = held_[worker][at];
     held_[worker].erase(held_[worker].begin() + std::ptrdiff_t(at));
-    ASSERT_TRUE(
+    const std::uint32_t tile = quantum.tile.value;
+    ASSERT_EQ(
+        again_.contains(tile) ? Finished::kAgain : Finished::kFirst,
         scheduler_->done(static_cast<int>(worker), quantum.tile, quantum.to, uniform(0, 1000)));
-    ASSERT_TRUE(done_.insert(quantum.tile.value).second) << "done twice";
+    ASSERT_TRUE(done_.insert({tile, static_cast<int>(worker)}).second) << "done twice";
     ASSERT_EQ(scheduler_->open(), grid_.count() - done_.size());
   }
   void lie(std::size_t worker) {
@@ -375,7 +393,7 @@ class RandomRun {
     for (const Quantum& quantum : held_[worker]) {
       if (quantum.tile == tile && quantum.to == step) return;
     }
-    ASSERT_FALSE(scheduler_->done(static_cast<int>(worker), tile, step, 0));
+    ASSERT_EQ(Finished::kNot, scheduler_->done(static_cast<int>(worker), tile, step, 0));
   }
   void lose(std::size_t worker) {
     if (std::count_if(capacity_.begin(), capacity_.end(), [](int c) { return c > 0; }) < 2) return;
@@ -383,6 +401,15 @@ class RandomRun {
     for (const Quantum& quantum : held_[worker]) given_.erase(quantum.tile.value);
     held_[worker].clear();
     capacity_[worker] = 0;
+    for (auto done = done_.begin(); done != done_.end();) {
+      if (done->second != static_cast<int>(worker)) {
+        ++done;
+        continue;
+      }
+      again_.insert(done->first);
+      given_.erase(done->first);
+      done = done_.erase(done);
+    }
     std::replace(owner_.begin(), owner_.end(), static_cast<int>(worker), -1);
   }
 
@@ -392,8 +419,10 @@ class RandomRun {
   std::vector<int> capacity_;
   std::optional<Scheduler> scheduler_;
   std::vector<std::vector<Quantum>> held_;
-  std::vector<int> owner_;                ///< of each tile's state
-  std::set<std::uint32_t> given_, done_;  ///< of the open step; what is done was given
+  std::vector<int> owner_;             ///< of each tile's state
+  std::set<std::uint32_t> given_;      ///< of the open step
+  std::map<std::uint32_t, int> done_;  ///< of those which, and by whom
+  std::set<std::uint32_t> again_;      ///< that a lost worker had done
 };
 
 TEST(Scheduler, TakesEachTileThroughEachStepOnceInAnyInterleavingAndLossOfWorkers) {
@@ -426,7 +455,8 @@ class Simulation {
       now = end;
       auto& queue = held_[worker];
       const Quantum quantum = queue.front().first;
-      EXPECT_TRUE(scheduler_.done(static_cast<int>(worker), quantum.tile, quantum.to, 1));
+      EXPECT_EQ(Finished::kFirst,
+                scheduler_.done(static_cast<int>(worker), quantum.tile, quantum.to, 1));
       queue.pop();
       if (!queue.empty()) running_.push({now + queue.front().second, worker});
       supply(worker, now);

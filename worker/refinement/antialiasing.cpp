@@ -130,11 +130,12 @@ void Antialiasing::add(TileLattice& lattice, const PixelOrder& order,
 }
 
 void Antialiasing::learn(const PixelSum& sum) {
-  if (sum.count() < 3) return;
+  const double bend = sum.bend() * sum.bend();
+  if (sum.count() < 3 || !(bend > 0)) return;
   // The others' mean has an error of its own, which is not the centre's.
   const double off = squared_distance(sum.centre().lanes(), sum.mean_of_others().lanes()) -
                      sum.squared_error(PixelErrorModel(squared_share()));
-  learned_ += std::min(1.0, off / (sum.bend() * sum.bend()));
+  learned_ += std::clamp(off / bend, -1.0, 1.0);
   learned_from_ += 1;
 }
 

@@ -74,7 +74,6 @@ class Antialiasing {
   /// one.
   double squared_error() const;
 
-  std::span<const PixelSum> sums() const { return sums_; }
   const PixelSum* find(SampleOffset place) const;
   std::size_t bytes() const {
     return sums_.size() * sizeof(PixelSum) + number_of_.size() * sizeof(std::uint32_t);

@@ -10,7 +10,7 @@ namespace {
 /// Where centres are off by this share of their bends, or more, the bends are edges.
 constexpr double kEdgeShare = 0.14;
 /// The error of Sobol samples at edges: variance / count^3/2, times this.
-constexpr double kEdgeGain = 0.465;
+constexpr double kEdgeGain = 0.47;
 /// Of an edge of height 1 that no sample of `count` has met: p = ½/(count + 1) is the likely share
 /// of the pixel behind it, p its variance.
 constexpr double kUnmet = 0.5 / (kEdgeShare * kEdgeShare);

@@ -9,6 +9,8 @@ namespace goldthread {
 namespace {
 
 constexpr int kFineGridSpacing = 8;
+/// That are kept at a time, however many a step takes.
+constexpr std::uint32_t kMostRays = 1U << 14;
 /// Of the squared error at the places between a grid's samples; half of it is left when they are
 /// sampled too, as at edges, whose area halves.
 constexpr double kLeftByHalving = 0.5;
@@ -124,22 +126,41 @@ bool TileRefinement::antialias(const StepPlan& plan, const Cast& cast) {
          cast_orders(antialiasing_.choose(lattice_, finest_, plan, task_.how.most_samples), cast);
 }
 
-bool TileRefinement::cast_orders(std::span<const PixelOrder> orders, const Cast& cast) {
+bool TileRefinement::cast_some(std::span<const PixelOrder> orders, const Cast& cast) {
   positions_.clear();
   for (const PixelOrder& order : orders)
     for (std::uint32_t number = order.first; number < order.last; ++number)
       positions_.push_back(
           sample_position(task_.rect.x + order.place.x, task_.rect.y + order.place.y, number));
   if (!cast_positions(cast)) return false;
-  if (orders.empty()) return true;
   std::size_t at = 0;
   for (const PixelOrder& order : orders) {
     const std::size_t count = order.last - order.first;
     antialiasing_.add(lattice_, order, std::span(samples_).subspan(at, count), met_[at],
                       task_.appearance);
-    changed_.push_back(order.place);
     at += count;
   }
+  return true;
+}
+
+bool TileRefinement::cast_orders(std::span<const PixelOrder> orders, const Cast& cast) {
+  std::vector<PixelOrder> some;
+  std::uint32_t rays = 0;
+  for (const PixelOrder& order : orders) {
+    changed_.push_back(order.place);
+    for (std::uint32_t first = order.first; first < order.last;) {
+      const std::uint32_t last = std::min(order.last, first + (kMostRays - rays));
+      some.push_back({order.place, first, last});
+      rays += last - first;
+      first = last;
+      if (rays < kMostRays) continue;
+      if (!cast_some(some, cast)) return false;
+      some.clear();
+      rays = 0;
+    }
+  }
+  if (!cast_some(some, cast)) return false;
+  if (orders.empty()) return true;
   // A pixel whose centre was cast in this step, too, is there already.
   std::sort(changed_.begin(), changed_.end());
   changed_.erase(std::unique(changed_.begin(), changed_.end()), changed_.end());

@@ -47,7 +47,10 @@ class TileRefinement {
   const Sample& sample(SampleOffset place) const { return lattice_.sample(place.x, place.y); }
   const TileLattice& lattice() const { return lattice_; }
   /// Roughly what it takes in memory.
-  std::size_t bytes() const { return lattice_.bytes() + antialiasing_.bytes(); }
+  std::size_t bytes() const {
+    return lattice_.bytes() + antialiasing_.bytes() +
+           positions_.capacity() * (sizeof(PixelPosition) + sizeof(Sample) + sizeof(std::uint32_t));
+  }
 
  private:
   bool cast_places(std::span<const SampleOffset> places, const Cast& cast);
@@ -56,6 +59,7 @@ class TileRefinement {
   bool antialias(const StepPlan& plan, const Cast& cast);
   bool cast_apron(const Cast& cast);
   bool cast_orders(std::span<const PixelOrder> orders, const Cast& cast);
+  bool cast_some(std::span<const PixelOrder> orders, const Cast& cast);
   bool probe(const StepPlan& plan, const Cast& cast);
   bool advance_evenly(const StepPlan& plan, const Cast& cast);
   bool advance_adaptively(const StepPlan& plan, const Cast& cast);
