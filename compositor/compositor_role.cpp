@@ -7,9 +7,9 @@
 #include "common/base/cores.h"
 #include "common/image/display.h"
 #include "common/protocol/topology.h"
+#include "common/tile/filter.h"
 #include "common/transport/shared_memory.h"
 #include "compositor/encode.h"
-#include "compositor/filter.h"
 #include "compositor/output_window.h"
 #include "compositor/reconstruct.h"
 
@@ -110,15 +110,19 @@ void CompositorRole::tell_step() {
   post_.to_master(BandReady{view_->epoch, step});
 }
 
-std::vector<float> CompositorRole::picture(Filter filter, ImageSize size, PixelRect rect,
+std::vector<float> CompositorRole::picture(Filter filter,
                                            std::span<const ViewMovement> moved) const {
-  auto pixels = in_parts() ? aged_->picture(moved, view_->background)
-                           : reconstruct(*samples_, filter, view_->background);
+  return in_parts() ? aged_->picture(moved, view_->background)
+                    : reconstruct(*samples_, filter, view_->background);
+}
+
+std::vector<float> CompositorRole::picture_of(const Present& present, PixelRect rect) const {
+  auto pixels = picture(present.filter, present.moved);
   const ImageSize image = view_->grid.image;
   const PixelRect band = samples_->rect();
-  if (size == image && filter != Filter::kBiquadratic) return pixels;
-  return resample(pixels, {band.width, band.height}, window_of(band, image, rect, size),
-                  {rect.width, rect.height}, filter);
+  if (present.size == image && present.filter != Filter::kBiquadratic) return pixels;
+  return resample(pixels, {band.width, band.height}, window_of(band, image, rect, present.size),
+                  {rect.width, rect.height}, present.filter);
 }
 
 void CompositorRole::on(const Present& message) {
@@ -126,7 +130,7 @@ void CompositorRole::on(const Present& message) {
   EncodedBand band;
   band.rect = band_of_size(samples_->rect(), view_->grid.image, message.size);
   if (band.rect.height == 0) return;  // less than a row of a smaller picture
-  const auto pixels = picture(message.filter, message.size, band.rect, message.moved);
+  const auto pixels = picture_of(message, band.rect);
   const auto rgb = display_rgb8(pixels, view_->color_space);
   const Encoding encoding = message.lossless ? Encoding::kZstdRgb : Encoding::kJpeg;
   band.present = message;
@@ -141,7 +145,7 @@ void CompositorRole::on(const CollectBand& message) {
   if (!view_ || message.epoch != view_->epoch) return;
   BandPicture band{message.epoch, samples_->rect(), {}};
   if (!samples_->tiles().empty()) {
-    const auto pixels = picture(message.filter, view_->grid.image, band.rect, {});
+    const auto pixels = picture(message.filter, {});
     band.pixels = Buffer(pixels.size() * sizeof(float));
     std::memcpy(band.pixels.data(), pixels.data(), band.pixels.size());
   }

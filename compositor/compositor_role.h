@@ -41,9 +41,10 @@ class CompositorRole {
   /// To the master, if all tiles have taken another one.
   void tell_step();
   void keep_early(Samples message);
-  /// The band's rows `rect` of a picture of `size`, float RGBA.
-  std::vector<float> picture(Filter filter, ImageSize size, PixelRect rect,
-                             std::span<const ViewMovement> moved) const;
+  /// The band's pixels, float RGBA, with what no ray was cast for filled in.
+  std::vector<float> picture(Filter filter, std::span<const ViewMovement> moved) const;
+  /// The rows `rect` of the picture that is to be shown, filtered: each band for itself.
+  std::vector<float> picture_of(const Present& present, PixelRect rect) const;
   bool in_parts() const { return view_->update != Update::kAll; }
   void forward_input();
 

@@ -4,7 +4,7 @@
 // height: a picture of other proportions shows less or as much at its sides, never more. Pure.
 
 #include "common/base/types.h"
-#include "compositor/filter.h"
+#include "common/tile/filter.h"
 
 namespace goldthread {
 

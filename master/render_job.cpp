@@ -5,6 +5,8 @@
 #include <cmath>
 #include <cstring>
 
+#include "common/tile/filter.h"
+
 namespace goldthread {
 namespace {
 
@@ -95,6 +97,11 @@ void collect(Cluster& cluster, const RenderRequest& request, RenderedFrame& fram
     }
     if (bytes > 0) std::memcpy(frame.rgba.data() + first, band->pixels.data(), bytes);
   }
+  // This one looks beyond the pixel, and so beyond a band.
+  if (request.filter == Filter::kBiquadratic)
+    frame.rgba = resample(frame.rgba, frame.size,
+                          {0, 0, double(frame.size.width), double(frame.size.height)}, frame.size,
+                          request.filter);
 }
 
 }  // namespace

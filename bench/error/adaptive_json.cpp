@@ -41,6 +41,7 @@ Json row_json(const CalibrationRow& row) {
 Json row_json(const FirstPictureRow& row) {
   return {{"look", name_of(row.look)},
           {"size", json_of_size(row.size)},
+          {"step", row.step},
           {"seconds", json_of(row.seconds)},
           {"trueRms", row.rms}};
 }

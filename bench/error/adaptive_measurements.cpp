@@ -22,7 +22,7 @@ constexpr int kLargeStride = 5;
 constexpr int kQuickStride = 17;
 /// Beyond so many pixels a picture is large.
 constexpr int kManyPixels = 1 << 19;
-constexpr Step kFirstPicture{2};
+constexpr Step kFirstPictures[] = {{1}, {2}};
 
 std::vector<double> targets(bool quick) {
   if (quick) return {kStepsTarget, 0.5};
@@ -165,7 +165,8 @@ void AdaptiveMeasurements::measure(Report& report) {
   for (const Look look : kLooks) {
     for (const double target : targets(settings_.quick))
       add(look, target, step_for(look, target), Aim::at_error(target));
-    add(look, 0, step_for(look, kStepsTarget), Aim::at_step(kFirstPicture));
+    for (const Step step : kFirstPictures)
+      add(look, 0, step_for(look, kStepsTarget), Aim::at_step(step));
   }
   add_every_pixel();
   add_vtk();
@@ -175,7 +176,8 @@ void AdaptiveMeasurements::measure(Report& report) {
     if (row.target > 0)
       report.adaptive.rows.push_back(row);
     else
-      report.adaptive.first_pictures.push_back({row.look, row.size, row.seconds, row.rms});
+      report.adaptive.first_pictures.push_back(
+          {row.look, row.size, row.steps, row.seconds, row.rms});
   }
   add_every_pixel_rows(report.adaptive);
   add_vtk_rows(report);

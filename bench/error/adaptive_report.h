@@ -50,10 +50,12 @@ struct CalibrationRow {
   double ratio() const { return rms > 0 ? estimated / rms : 0; }
 };
 
-/// From the view's begin to the first two steps, reconstructed.
+/// From the view's begin to the first or the second step, reconstructed. A session shows the first
+/// step as soon as it has it.
 struct FirstPictureRow {
   Look look = Look::kUnlit;
   ImageSize size;
+  int step = 1;
   Seconds seconds;
   double rms = 0;
 };

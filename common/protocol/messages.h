@@ -333,10 +333,10 @@ struct Present {
                      &Present::final, &Present::cine_frame, &Present::cine_frames,
                      &Present::estimated_error, &Present::moved)
 };
-/// Send the band's finished pixels to the master.
+/// Send the band's pixels to the master.
 struct CollectBand {
   Epoch epoch;
-  Filter filter = Filter::kBilinear;
+  Filter filter = Filter::kBilinear;  ///< of what is filled in
   GOLDTHREAD_MESSAGE(CollectBand, &CollectBand::epoch, &CollectBand::filter)
 };
 /// A compositor's encoded band, for the gateway to put together with the others'.

@@ -103,6 +103,7 @@ if (transport === 'loopback') {
     'four samples in each pixel': [...everyPixel, '--samples', '4'],
     'constant blocks': ['--error', '4', '--filter', 'box'],
     'bicubic filling': ['--error', '4', '--filter', 'bicubic'],
+    'smoothed pixels': ['--error', '4', '--filter', 'biquadratic'],
   };
   for (const [name, quality] of Object.entries(qualities)) {
     test(`Ranks agree on a picture of ${name}`, async () => {

@@ -39,7 +39,7 @@ inline AdaptiveReport example_adaptive() {
         row.estimated = row.rms = 0.9 * target;
         adaptive.rows.push_back(row);
       }
-      adaptive.first_pictures.push_back({look, size, {0.007, 0.008, 9}, 8});
+      adaptive.first_pictures.push_back({look, size, 1, {0.007, 0.008, 9}, 8});
     }
   adaptive.calibration = {{Look::kUnlit, 3, 0.04, 2.2, 2}, {Look::kPhong, 4, 0.1, 0.9, 1}};
   return adaptive;

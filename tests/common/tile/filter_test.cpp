@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "compositor/filter.h"
+#include "common/tile/filter.h"
 
 #include <gtest/gtest.h>
 
