@@ -54,7 +54,7 @@ std::string plot_script(const MotionReport& report, const std::string& path) {
     ++curves;
   }
   return std::string(kFrame) +
-         titled("Error while the camera moves: " + path, subtitle_of(report)) +
+         titled("Error in motion: " + path, subtitle_of(report)) +
          "set xlabel 'seconds'\nset ylabel 'RMS error in 1/255'\nset yrange [0:*]\n" + data +
          on_both_terminals(file_name(path), command + "\n");
 }

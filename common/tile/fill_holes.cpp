@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "common/tile/fill_holes.h"
 
+#include <algorithm>
 #include <cstddef>
 #include <cstring>
 
@@ -145,10 +146,33 @@ class CubicFill {
   int half_;
 };
 
+bool same_bits(const Sample& a, const Sample& b) { return std::memcmp(&a, &b, sizeof a) == 0; }
+
+/// Whether all that is known is one colour, as in a tile of background.
+bool is_constant(const TilePlane& plane) {
+  const Sample& first = plane.samples[0];
+  const std::size_t count = plane.known.size();
+  std::size_t i = 0;
+  for (; i + sizeof(std::uint64_t) <= count; i += sizeof(std::uint64_t)) {
+    std::uint64_t some;
+    std::memcpy(&some, plane.known.data() + i, sizeof some);
+    if (some == 0) continue;
+    for (std::size_t j = i; j < i + sizeof some; ++j)
+      if (plane.known[j] && !same_bits(plane.samples[j], first)) return false;
+  }
+  for (; i < count; ++i)
+    if (plane.known[i] && !same_bits(plane.samples[i], first)) return false;
+  return true;
+}
+
 }  // namespace
 
 void fill_holes(const TilePlane& plane, Filter filter) {
   if (!plane.known[0] || !std::memchr(plane.known.data(), 0, plane.known.size())) return;
+  if (is_constant(plane)) {
+    std::fill(plane.samples.begin(), plane.samples.end(), Sample(plane.samples[0]));
+    return;
+  }
   for (int spacing = kCoarsestSpacing; spacing > 1; spacing /= 2) {
     if (filter == Filter::kBicubic) {
       CubicFill(plane, spacing).run();

@@ -126,6 +126,19 @@ TEST(FillHoles, AConstantStaysConstantToTheBit) {
   }
 }
 
+TEST(FillHoles, OneOtherSampleInAConstantTileIsSeen) {
+  const Field constant = [](double, double) { return 0.3; };
+  for (int y = 0; y < 17; ++y) {
+    for (int x = 0; x < 33; ++x) {
+      Tile tile = sampled(33, 17, 16, constant);
+      tile.set(x, y, [](double, double) { return 0.7; });
+      tile.fill(Filter::kBilinear);
+      ASSERT_EQ(tile.at(x, y), sample_of(0.7)) << x << " " << y;
+      ASSERT_NE(tile.at(x > 0 ? x - 1 : x + 1, y), Tile::kJunk) << x << " " << y;
+    }
+  }
+}
+
 TEST(FillHoles, AllFiltersButTheBoxKeepALinearRampWhateverIsKnown) {
   for (const Filter filter : kFilters) {
     if (filter == Filter::kBox) continue;
