@@ -298,16 +298,18 @@ void ServeJob::cast(const Camera& camera) {
   serial_ = newest_serial_;
   final_error_.reset();
   paused_ = again_ = false;
-  back_ = {camera, edits_, {}, kLargestSpatialErrorPx};
   Scene scene = scene_;
   scene.camera = camera;
   const TileGrid grid = request_.grid(scene_.image.size);
   if (grid != cluster_.view().grid) whole_.reset();
   const bool moving = is_moving() && cine_.idle();
   update_ = moving ? update_in_motion(request_.display.update, whole_) : Update::kAll;
+  back_ = {camera, edits_, {}, kLargestSpatialErrorPx, update_};
   cluster_.begin_view(scene, {grid, refinement_of(request_.stop), update_, moving_frame_++});
   back_.epoch = cluster_.view().epoch;
   if (update_ == Update::kAll) return;
+  // What was updated in another way is not kept.
+  std::erase_if(parts_, [&](const Shown& part) { return part.update != update_; });
   parts_.push_back(back_);
   while (parts_.size() > parts_of(update_)) parts_.pop_front();
 }

@@ -53,6 +53,7 @@ class ServeJob {
     std::uint32_t edits = 0;  ///< changes of scene and size so far
     Epoch epoch;
     double spatial_px = 0;
+    Update update = Update::kAll;
   };
 
   void open_gateway();
