@@ -53,8 +53,7 @@ std::string plot_script(const MotionReport& report, const std::string& path) {
                            kColors[curves % kColors.size()], quoted(row.method));
     ++curves;
   }
-  return std::string(kFrame) +
-         titled("Error in motion: " + path, subtitle_of(report)) +
+  return std::string(kFrame) + titled("Error in motion: " + path, subtitle_of(report)) +
          "set xlabel 'seconds'\nset ylabel 'RMS error in 1/255'\nset yrange [0:*]\n" + data +
          on_both_terminals(file_name(path), command + "\n");
 }

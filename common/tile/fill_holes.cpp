@@ -146,8 +146,6 @@ class CubicFill {
   int half_;
 };
 
-bool same_bits(const Sample& a, const Sample& b) { return std::memcmp(&a, &b, sizeof a) == 0; }
-
 /// Whether all that is known is one colour, as in a tile of background.
 bool is_constant(const TilePlane& plane) {
   const Sample& first = plane.samples[0];
@@ -158,10 +156,10 @@ bool is_constant(const TilePlane& plane) {
     std::memcpy(&some, plane.known.data() + i, sizeof some);
     if (some == 0) continue;
     for (std::size_t j = i; j < i + sizeof some; ++j)
-      if (plane.known[j] && !same_bits(plane.samples[j], first)) return false;
+      if (plane.known[j] && plane.samples[j] != first) return false;
   }
   for (; i < count; ++i)
-    if (plane.known[i] && !same_bits(plane.samples[i], first)) return false;
+    if (plane.known[i] && plane.samples[i] != first) return false;
   return true;
 }
 
