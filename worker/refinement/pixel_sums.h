@@ -34,7 +34,8 @@ class PixelSum {
   double variance() const { return count_ > 1 ? squares_ / (3.0 * (count_ - 1)) : 0; }
   /// Estimated squared error of the mean. Scrambled Sobol samples of an edge converge like
   /// count^-3/2 in variance; the factor is measured. Samples that all agree may still have missed
-  /// what made the centre bend, so that where bends were edges such a pixel counts as not yet known.
+  /// what made the centre bend, so that where bends were edges such a pixel counts as not yet
+  /// known.
   double squared_error(const PixelErrorModel& model) const;
   double bend() const { return bend_; }
   /// The first sample, as displayed.
