@@ -57,9 +57,8 @@ class Chooser {
     const bool all = surprising || rule_.all_five;
     const std::array edges{look_along(a, b, {1, 0}, all), look_along(a, c, {0, 1}, all),
                            look_along(b, d, {0, 1}, all), look_along(c, d, {1, 0}, all)};
-    const bool same = std::all_of(edges.begin(), edges.end(), [](const Edge& edge) {
-      return edge.state == EdgeState::kSame;
-    });
+    const bool same = std::all_of(edges.begin(), edges.end(),
+                                  [](const Edge& edge) { return edge.state == EdgeState::kSame; });
     if (same && !all && !differ_at_all) return;
     if (spacing_ == rule_.whole) return want_pixels_of(square);
     for (const Edge& edge : edges)
