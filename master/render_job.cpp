@@ -60,8 +60,10 @@ void cast_view(Cluster& cluster, const Scene& scene, const RenderRequest& reques
     if (!event) continue;
     if (const auto* lost = std::get_if<WorkerLost>(&*event)) {
       request.worker_lost(lost->rank);
-      if (lost->view_lost) begin_view();
-      enough = enough && !lost->view_lost;
+      if (lost->view_lost) {
+        begin_view();
+        enough = false;
+      }
     }
     if (!std::holds_alternative<StepCast>(*event)) continue;
     request.progress(progress_of(view, request.stop));

@@ -220,7 +220,7 @@ FrameState ServeJob::frame_state() const {
   // What is updated in parts, or cast for a moment, is never finished.
   const bool is_known = update_ == Update::kAll && cluster_.view().held >= kFirstAdaptiveStep;
   state.estimated_error = is_known ? estimated_error(cluster_.view()) : 255;
-  state.enough = paused_ && cluster_.view().held == cluster_.view().cast();
+  state.enough = is_paused();
   state.target_error = request_.stop.error;
   state.final_error = final_error_;
   state.since_begun = since(cluster_.view().begin);
@@ -259,7 +259,7 @@ void ServeJob::reshow() {
     again_ = again_ || final_error_;
     show(false);
     reshow_ = false;
-  } else if (again_ && paused_ && cluster_.view().held == cluster_.view().cast()) {
+  } else if (again_ && is_paused()) {
     again_ = false;
     show(true);
   }
@@ -274,9 +274,7 @@ bool ServeJob::is_settled() const {
 
 void ServeJob::advance_cine() {
   if (!cine_.frame() || !audience_ready_ || !has_picture()) return;
-  const ViewState& view = cluster_.view();
-  const bool is_enough = paused_ && view.held == view.cast();
-  if (!is_enough && estimated_error(view) > request_.stop.error) return;
+  if (!is_paused() && estimated_error(cluster_.view()) > request_.stop.error) return;
   show(false);
   cine_.frame_done();
   if (cine_.frame()) cast(cine_.camera());

@@ -81,6 +81,8 @@ class ServeJob {
   const char* phase() const;
   bool is_moving() const;
   bool has_picture() const { return cluster_.view().held > kNoStep; }
+  /// Whether no step is open, since none is wanted, and the compositors hold all there are.
+  bool is_paused() const { return paused_ && cluster_.view().held == cluster_.view().cast(); }
   /// Whether the samples of the view cover a picture of the wanted size.
   bool covers_size() const;
   FrameState frame_state() const;

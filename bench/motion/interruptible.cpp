@@ -5,10 +5,12 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <utility>
 
 #include "bench/motion/methods.h"
 #include "bench/motion/refined_view.h"
 #include "master/frame_policy.h"
+#include "master/stop_rule.h"
 #include "master/temporal_error.h"
 
 namespace goldthread::bench {
@@ -31,8 +33,7 @@ class Interruptible : public MotionMethod {
     if (!(newest == newest_)) last_input_ = now;
     newest_ = newest;
     if (!view_ && !whole_) begin(now);
-    WorkDone done;
-    refine(done.seconds);
+    WorkDone done{refine(), {}};
     const FrameState state = state_at(now + done.seconds);
     const FrameAction action = decide(state);
     if (action == FrameAction::kShow || action == FrameAction::kShowFinal ||
@@ -78,13 +79,10 @@ class Interruptible : public MotionMethod {
     expected_whole_ = microseconds(whole_->seconds);
   }
 
-  /// A quantum of work.
-  void refine(double& seconds) {
-    if (whole_) {
-      seconds = std::max(whole_->seconds, kQuantumSeconds);
-      whole_->seconds = 0;
-      return;
-    }
+  /// A quantum of work; what it took.
+  double refine() {
+    if (whole_) return std::max(std::exchange(whole_->seconds, 0), kQuantumSeconds);
+    double seconds = 0;
     while (seconds < kQuantumSeconds) {
       const double taken = view_->advance();
       seconds += taken;
@@ -92,6 +90,7 @@ class Interruptible : public MotionMethod {
       if (view_->is_whole() && view_->step() == Step{2})
         expected_whole_ = whole_after(microseconds(spent_));
     }
+    return seconds;
   }
 
   double lateness(const Camera& camera) const {
@@ -114,7 +113,7 @@ class Interruptible : public MotionMethod {
       const TileQuality quality = view_->quality();
       const double pixels = double(scene_.image.size.width) * scene_.image.size.height;
       state.back.spatial_px = spatial_error_px(quality.squared_error, quality.squared_gradient);
-      state.estimated_error = 255 * std::sqrt(quality.squared_error / pixels);
+      state.estimated_error = goldthread::rms_error(quality.squared_error, pixels);
     }
     state.target_error = kTargetError;
     state.final_error = final_error_;

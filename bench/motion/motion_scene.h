@@ -68,6 +68,7 @@ struct FullFrame {
 FullFrame full_frame(const MotionScene& scene, const Camera& camera);
 
 /// What all methods are held against: displayed colours, the mean over each pixel of 3×3 rays.
+/// filtered_truth() takes some 160 of them, which is too many for a picture at each 1/60 s.
 std::vector<Color> true_picture(const MotionScene& scene, const Camera& camera);
 
 }  // namespace goldthread::bench
