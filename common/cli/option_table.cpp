@@ -95,12 +95,6 @@ Outcome read_choice(std::string_view text, std::initializer_list<Named<Value>> k
   return read_choice(text, std::span<const Named<Value>>(known.begin(), known.size()), value);
 }
 
-// ---- What this version does not have yet: the whole list ----
-
-Outcome refuse(std::string_view what, std::string_view instead) {
-  return not_in_this_version(what, instead);
-}
-
 /// Tiles hold whole squares of the coarsest level's samples.
 Outcome apply_tile(Options& options, const std::string& text) {
   constexpr int kCoarsestSpacing = 16;
@@ -115,18 +109,40 @@ Outcome apply_tile(Options& options, const std::string& text) {
   return {};
 }
 
-Outcome apply_bypass(Options&, const std::string& text) {
-  if (text == "none") return {};
-  return refuse("by-passing roles", "leave --bypass out");
+/// Roles by name, with commas between them; each is new to the list.
+Outcome apply_bypass(Options& options, const std::string& text) {
+  Bypass bypass;
+  if (text != "none") {
+    for (std::string_view rest = text; !rest.empty();) {
+      const std::string_view name = rest.substr(0, rest.find(','));
+      rest.remove_prefix(std::min(rest.size(), name.size() + 1));
+      bool Bypass::*role = nullptr;
+      Outcome bad = read_choice<bool Bypass::*>(name,
+                                                {{"master", &Bypass::master},
+                                                 {"worker", &Bypass::worker},
+                                                 {"compositor", &Bypass::compositor}},
+                                                role);
+      if (bad) return bad;
+      bypass.*role = true;
+    }
+  }
+  options.bypass = bypass;
+  return {};
 }
 
-Outcome apply_data(Options&, const std::string& text) {
-  if (text.rfind("slabs", 0) == 0) return refuse("data in slabs", "use --data replicated");
-  int replicated = 0;
-  return read_choice<int>(text, {{"replicated", 0}}, replicated);
+/// replicated, slabs or slabs:N.
+Outcome apply_data(Options& options, const std::string& text) {
+  constexpr std::string_view kCounted = "slabs:";
+  if (text.starts_with(kCounted)) {
+    int slabs = 0;
+    Outcome bad =
+        read_integer(std::string_view(text).substr(kCounted.size()), 1, kMostSlabs, slabs);
+    if (!bad) options.slabs = slabs;
+    return bad;
+  }
+  return read_choice<std::optional<int>>(
+      text, {{"replicated", std::nullopt}, {"slabs", kSlabOfEachWorker}}, options.slabs);
 }
-
-// ---- The others ----
 
 Outcome apply_sampling(Options& options, const std::string& text) {
   return read_choice<Sampling>(text, std::span(kSamplingNames), options.sampling);
@@ -293,10 +309,14 @@ constexpr OptionRow kTable[] = {
      apply_tile},
     {"schedule", "--schedule", "HOW", kCluster,
      "squares or rows: which parts of the screen go out together [squares]", kBoth, apply_schedule},
-    {"data", "--data", "WHERE", kCluster, "Where the volume lives: replicated [replicated]", kBoth,
-     apply_data},
-    {"bypass", "--bypass", "LIST", kCluster, "Roles to replace by stubs [none]", kBoth,
-     apply_bypass},
+    {"data", "--data", "WHERE", kCluster,
+     "Where the volume lives: replicated, whole on each node; or slabs:N, cut into N parts that "
+     "groups of workers share, slabs into one for each worker [replicated]",
+     kBoth, apply_data},
+    {"bypass", "--bypass", "LIST", kCluster,
+     "Roles whose computing is replaced by stubs that keep every message: any of master, worker, "
+     "compositor, with commas between them [none]",
+     kBoth, apply_bypass},
     {"host", "--host", "H", kSession, "Address to listen on [127.0.0.1]", kServes,
      [](Options& o, const std::string& t) { return keep_text(t, o.host); }},
     {"port", "--port", "P", kSession, "Port to listen on, 0 for any free one [8080]", kServes,
@@ -327,10 +347,6 @@ bool is_bench_subject(std::string_view name) {
   constexpr std::array<std::string_view, 5> kSubjects = {"error", "motion", "throughput", "balance",
                                                          "scale"};
   return std::find(kSubjects.begin(), kSubjects.end(), name) != kSubjects.end();
-}
-
-BadValue not_in_this_version(std::string_view what, std::string_view instead) {
-  return {fmt::format("{} is not in this version", what), std::string(instead)};
 }
 
 }  // namespace goldthread

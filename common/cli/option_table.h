@@ -38,9 +38,7 @@ constexpr std::uint8_t command_bit(Command command) {
   return static_cast<std::uint8_t>(1 << static_cast<int>(command));
 }
 
-/// Whether `goldthread bench` has this subject, or will have it.
+/// Whether `goldthread bench` has this subject.
 bool is_bench_subject(std::string_view name);
-/// The words for a feature that is promised and still to come.
-BadValue not_in_this_version(std::string_view what, std::string_view instead);
 
 }  // namespace goldthread

@@ -27,9 +27,21 @@ struct Orbit {
   bool operator==(const Orbit&) const = default;
 };
 
+/// The roles whose computing is replaced by stubs that keep every message.
+struct Bypass {
+  bool master = false;
+  bool worker = false;
+  bool compositor = false;
+  bool operator==(const Bypass&) const = default;
+};
+
+/// Of Options::slabs: as many as there are workers.
+constexpr int kSlabOfEachWorker = 0;
+constexpr int kMostSlabs = 64;
+
 /// What `bench` alone takes.
 struct BenchOptions {
-  std::string subject;         ///< "error" or "motion"
+  std::string subject;         ///< "error", "motion", "throughput", "balance" or "scale"
   std::optional<int> repeats;  ///< frames of each method
   std::optional<int> stride;   ///< the reference takes every stride-th pixel in both directions
   bool quick = false;          ///< fewer of everything
@@ -50,6 +62,8 @@ struct Options {
   std::optional<int> threads;  ///< absent: cores of the node / worker ranks on it
   int compositors = 1;
   int tile_px = 64;
+  Bypass bypass;
+  std::optional<int> slabs;  ///< parts of the volume; absent: each node holds all of it
   Schedule schedule = Schedule::kSquares;
   Sampling sampling = Sampling::kAdaptive;
   double error = 0.5;          ///< estimated RMS error in 1/255

@@ -13,8 +13,10 @@ int run_cluster(const Options& options);
 /// Runs `info`.
 int run_info(const Options& options);
 
-/// Runs `bench`, in this process alone.
+/// Runs `bench`: the subject that the options name.
 int run_bench(const Options& options);
+int run_error_bench(const Options& options);
+int run_motion_bench(const Options& options);
 
 /// What the master does once all ranks are there.
 class Cluster;

@@ -297,19 +297,31 @@ TEST(CommandLine, ASequenceNeedsAPattern) {
   EXPECT_EQ(options(kRender + Words{"--orbit", "1"}).output, "a.png");
 }
 
-TEST(CommandLine, WhatIsStillToComeIsRefusedByName) {
-  const auto of = [](const std::string& option, const std::string& value) {
-    return refusal(kRender + Words{option, value});
-  };
-  EXPECT_EQ(of("--bypass", "worker"),
-            "--bypass: by-passing roles is not in this version (leave --bypass out)");
-  EXPECT_EQ(of("--data", "slabs:4"),
-            "--data: data in slabs is not in this version (use --data replicated)");
-  for (const std::string subject : {"throughput", "balance", "scale"}) {
-    EXPECT_EQ(refusal({"bench", subject, "-o", "dir"}),
-              "bench: measuring " + subject +
-                  " is not in this version (use bench error or bench motion)");
-  }
+TEST(CommandLine, BypassNamesRoles) {
+  EXPECT_EQ(options(kRender).bypass, Bypass{});
+  EXPECT_EQ(options(kRender + Words{"--bypass", "none"}).bypass, Bypass{});
+  EXPECT_EQ(options(kRender + Words{"--bypass", "worker"}).bypass, (Bypass{.worker = true}));
+  EXPECT_EQ(options(kRender + Words{"--bypass", "compositor,master"}).bypass,
+            (Bypass{.master = true, .compositor = true}));
+  EXPECT_EQ(
+      refusal(kRender + Words{"--bypass", "workers"}),
+      "--bypass: \"workers\" is none of master, worker, compositor (did you mean \"worker\"?)");
+}
+
+TEST(CommandLine, DataLivesReplicatedOrInSlabs) {
+  EXPECT_FALSE(options(kRender).slabs);
+  EXPECT_FALSE(options(kRender + Words{"--data", "replicated"}).slabs);
+  EXPECT_EQ(options(kRender + Words{"--data", "slabs"}).slabs, kSlabOfEachWorker);
+  EXPECT_EQ(options(kRender + Words{"--data", "slabs:4"}).slabs, 4);
+  EXPECT_EQ(refusal(kRender + Words{"--data", "slabs:0"}),
+            "--data: \"0\" is not a whole number from 1 to 64 (give one from 1 to 64)");
+  EXPECT_EQ(refusal(kRender + Words{"--data", "slab"}),
+            "--data: \"slab\" is none of replicated, slabs (did you mean \"slabs\"?)");
+}
+
+TEST(CommandLine, ABenchNeedsASubject) {
+  for (const std::string subject : {"error", "motion", "throughput", "balance", "scale"})
+    EXPECT_EQ(options({"bench", subject, "-o", "dir"}).bench.subject, subject);
   EXPECT_EQ(refusal({"bench", "x"}),
             "bench: needs a subject (error, motion, throughput, balance or scale)");
 }
