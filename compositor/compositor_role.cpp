@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "common/base/cores.h"
+#include "common/base/memory.h"
 #include "common/image/display.h"
 #include "common/protocol/topology.h"
 #include "common/tile/filter.h"
@@ -178,7 +179,8 @@ void CompositorRole::on(Reply message) {
 }
 
 void CompositorRole::on(const ReportCounters&) {
-  post_.to_master(Counters{post_.sent(), std::chrono::duration<double>(busy_).count()});
+  post_.to_master(
+      Counters{post_.sent(), std::chrono::duration<double>(busy_).count(), peak_memory_bytes()});
 }
 
 void CompositorRole::on(const Stop& message) { stop_ = message; }

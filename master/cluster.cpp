@@ -5,6 +5,7 @@
 #include <set>
 #include <utility>
 
+#include "common/base/memory.h"
 #include "common/scene/scene_file.h"
 #include "common/transport/heartbeat.h"
 #include "common/transport/shared_memory.h"
@@ -15,6 +16,8 @@ namespace {
 constexpr std::chrono::seconds kGreetingTimeout{60};
 constexpr std::chrono::milliseconds kIdleWait{50};
 constexpr std::chrono::seconds kFarewell{2};
+/// Threads of a worker whose tiles may wait for other slabs.
+constexpr int kMostWaitingTiles = 16;
 
 std::string rank_name(Rank rank, const RankState& state) {
   return "rank " + std::to_string(rank.value) + (state.host.empty() ? "" : " on " + state.host);
@@ -95,12 +98,26 @@ void Cluster::begin_session() {
                                              static_cast<std::uint32_t>(topology_.compositors)});
     }
   }
+  if (options_.slabs) slabs_ = *options_.slabs > 0 ? *options_.slabs : topology_.workers;
+  if (slabs_ > topology_.workers) {
+    throw FatalError(
+        {"--data",
+         std::to_string(slabs_) + " slabs need as many workers, and there " +
+             (topology_.workers == 1 ? "is 1" : "are " + std::to_string(topology_.workers)),
+         "start more workers, or say --data slabs:" + std::to_string(topology_.workers),
+         ExitStatus::kUsage});
+  }
   for (int w = 0; w < topology_.workers; ++w) {
     const Rank rank = topology_.worker(w);
     auto& places = capacity[static_cast<std::size_t>(w)];
-    ranks_[static_cast<std::size_t>(rank.value)].threads = places;
-    post_.to_worker(rank, BeginSession{static_cast<std::uint32_t>(places), options_.interactive,
-                                       static_cast<std::uint32_t>(topology_.compositors)});
+    const int threads = places;
+    ranks_[static_cast<std::size_t>(rank.value)].threads = threads;
+    // Of tiles whose rays go from slab to slab most wait.
+    places = std::min(threads * (slabs_ + 1), std::max(threads, kMostWaitingTiles));
+    post_.to_worker(
+        rank, BeginSession{static_cast<std::uint32_t>(threads), options_.interactive,
+                           static_cast<std::uint32_t>(topology_.compositors),
+                           static_cast<std::uint32_t>(slabs_), static_cast<std::uint32_t>(places)});
     ++places;  // the spare tile
   }
   scheduler_ = Scheduler(capacity);
@@ -109,20 +126,49 @@ void Cluster::begin_session() {
 VolumeInfo Cluster::load_volume(const SceneVolume& volume,
                                 const std::function<void(double)>& progress) {
   progress_ = progress;
-  std::set<std::string> nodes;
+  std::set<std::pair<std::string, int>> read;
   for (int w = 0; w < topology_.workers; ++w) {
     const Rank rank = topology_.worker(w);
-    if (nodes.insert(ranks_[static_cast<std::size_t>(rank.value)].node).second) {
-      post_.to_worker(rank, LoadVolume{volume.file.string(), volume.component.value_or(-1)});
+    const int slab = slab_of_worker(w);
+    if (read.insert({ranks_[static_cast<std::size_t>(rank.value)].node, slab}).second) {
+      post_.to_worker(
+          rank, LoadVolume{volume.file.string(), volume.component.value_or(-1),
+                           static_cast<std::uint32_t>(slab), static_cast<std::uint32_t>(slabs_)});
     }
   }
-  while (std::cmp_less(mapped_, topology_.workers)) {
+  wait_until([&] { return std::cmp_greater_equal(mapped_, topology_.workers); });
+  if (slabs_ > 0) describe_slabs();
+  progress_ = nullptr;
+  return *volume_;
+}
+
+void Cluster::wait_until(const std::function<bool()>& done) {
+  while (!done()) {
     check_interrupted();
     if (!handle_one()) post_.wait(kIdleWait);
     check_liveness();
   }
-  progress_ = nullptr;
-  return *volume_;
+}
+
+void Cluster::describe_slabs() {
+  std::vector<SlabStatistics> parts;
+  for (const auto& [slab, reader] : readers_) parts.push_back(reader.statistics);
+  merge_statistics(parts, *volume_);
+  for (const auto& [slab, reader] : readers_)
+    post_.to_worker(reader.rank, CountVoxels{volume_->minimum, volume_->maximum});
+  wait_until([&] {
+    return std::all_of(readers_.begin(), readers_.end(),
+                       [](const auto& reader) { return reader.second.counted; });
+  });
+  send_to_workers(DescribeVolume{*volume_});
+}
+
+void Cluster::on(Rank from, const VoxelCounts& message) {
+  for (auto& [slab, reader] : readers_) {
+    if (reader.rank != from || reader.counted) continue;
+    reader.counted = true;
+    add_counts(message.histogram, volume_->histogram);
+  }
 }
 
 void Cluster::on(Rank, LoadProgress message) {
@@ -132,11 +178,14 @@ void Cluster::on(Rank, LoadProgress message) {
 void Cluster::on(Rank from, VolumeLoaded message) {
   ++mapped_;
   const std::string& node = ranks_[static_cast<std::size_t>(from.value)].node;
+  const int slab = slab_of_worker(topology_.worker_index(from));
   for (int w = 0; w < topology_.workers; ++w) {
     const Rank rank = topology_.worker(w);
     if (rank == from || ranks_[static_cast<std::size_t>(rank.value)].node != node) continue;
-    post_.to_worker(rank, MapVolume{message.info, message.block});
+    if (slab_of_worker(w) != slab) continue;
+    post_.to_worker(rank, MapVolume{message.info, message.slab, message.block});
   }
+  readers_.try_emplace(slab, SlabReader{from, statistics_of(message.info, message.slab)});
   if (!volume_) volume_ = std::move(message.info);
 }
 
@@ -147,11 +196,15 @@ void Cluster::commit(const Scene& scene) {
   send_to_workers(CommitScene{revision_, scene_to_json(scene, {.internal = true})});
 }
 
-void Cluster::on(Rank, SceneCommitted message) {
+void Cluster::on(Rank from, SceneCommitted message) {
   if (message.revision != revision_) return;
   features_ = std::move(message.features);
   kernel_ = std::move(message.kernel);
-  visible_points_ = std::move(message.visible_points);
+  visible_by_slab_[slab_of_worker(topology_.worker_index(from))] =
+      std::move(message.visible_points);
+  visible_points_.clear();
+  for (const auto& [slab, points] : visible_by_slab_)
+    visible_points_.insert(visible_points_.end(), points.begin(), points.end());
 }
 
 void Cluster::begin_view(const Scene& scene, const ViewRequest& request) {
@@ -284,6 +337,8 @@ void Cluster::lose(Rank rank) {
                       "has been silent for " + std::to_string(kSilence.count() / 1000) + " s",
                       "look at that host's log, then start again", ExitStatus::kClusterFailed});
   }
+  if (slabs_ > 0)
+    send_to_workers(WorkerGone{static_cast<std::uint32_t>(topology_.worker_index(rank))});
   scheduler_.worker_lost(topology_.worker_index(rank));
   // What it did of the open step is done again. Of an earlier one the compositors must have it all.
   const Step cast = view_.cast();
@@ -291,13 +346,6 @@ void Cluster::lose(Rank rank) {
   if (view_lost) scheduler_.cancel();
   for (int w = 0; w < topology_.workers; ++w) supply(w);
   events_.push_back(WorkerLost{rank, view_lost});
-}
-
-void Cluster::send_to_workers(const ToWorker& message) {
-  for (int w = 0; w < topology_.workers; ++w) {
-    const Rank rank = topology_.worker(w);
-    if (!liveness_.is_lost(rank)) post_.to_worker(rank, message);
-  }
 }
 
 void Cluster::handle(Rank from, ToMaster message) {
@@ -322,6 +370,7 @@ void Cluster::request_counters() {
   for (RankState& state : ranks_) state.counted = false;
   ranks_[0].counted = true;
   ranks_[0].sent = post_.sent();
+  ranks_[0].peak_memory_bytes = peak_memory_bytes();
   for (int c = 0; c < topology_.compositors; ++c) {
     post_.to_compositor(topology_.compositor(c), ReportCounters{});
   }
@@ -333,6 +382,7 @@ void Cluster::on(Rank from, Counters message) {
   state.counted = true;
   state.sent = std::move(message.sent);
   state.busy_seconds = message.busy_seconds;
+  state.peak_memory_bytes = message.peak_memory_bytes;
 }
 
 bool Cluster::counters_complete() const {

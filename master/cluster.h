@@ -8,6 +8,7 @@
 #include <chrono>
 #include <deque>
 #include <functional>
+#include <map>
 #include <optional>
 #include <string>
 #include <variant>
@@ -17,6 +18,7 @@
 #include "common/protocol/topology.h"
 #include "common/scene/scene.h"
 #include "common/transport/post.h"
+#include "common/volume/slab_statistics.h"
 #include "master/cost_history.h"
 #include "master/liveness.h"
 #include "master/scheduler.h"
@@ -34,6 +36,7 @@ class Interrupted : public FatalError {
 struct ClusterOptions {
   int threads = 0;           ///< per worker; 0: the cores of its node / the workers on it
   bool interactive = false;  ///< compute threads give way to everything else
+  std::optional<int> slabs;  ///< parts of the volume, 0: one for each worker; absent: not cut
   /// Asked while waiting for other ranks; true ends the job with Interrupted.
   std::function<bool()> interrupted = [] { return false; };
 };
@@ -44,9 +47,10 @@ struct RankState {
   std::string node;
   int threads = 1;  ///< cores of its node until the session begins, then compute threads
   bool greeted = false;
-  bool lost = false;               ///< silent for too long; gets no work any more
-  std::uint64_t tiles = 0;         ///< cast since the start
-  double busy_seconds = 0;         ///< thread time spent computing since the start
+  bool lost = false;        ///< silent for too long; gets no work any more
+  std::uint64_t tiles = 0;  ///< cast since the start
+  double busy_seconds = 0;  ///< thread time spent computing since the start
+  std::uint64_t peak_memory_bytes = 0;
   bool counted = false;            ///< has answered the last request_counters()
   std::vector<MessageCount> sent;  ///< as of that answer
 };
@@ -107,6 +111,13 @@ struct ViewRequest {
   std::uint32_t frame = 0;
 };
 
+/// Who has read a slab, and what it is like.
+struct SlabReader {
+  Rank rank;
+  SlabStatistics statistics;
+  bool counted = false;
+};
+
 class Cluster {
  public:
   Cluster(Transport& transport, Topology topology, ClusterOptions options);
@@ -151,6 +162,7 @@ class Cluster {
   void on(Rank, Heartbeat) {}
   void on(Rank from, LoadProgress message);
   void on(Rank from, VolumeLoaded message);
+  void on(Rank from, const VoxelCounts& message);
   void on(Rank from, VolumeMapped message);
   void on(Rank from, SceneCommitted message);
   void on(Rank from, ViewTaken message);
@@ -163,7 +175,20 @@ class Cluster {
     events_.push_back(std::move(message));
   }
   void begin_session();
-  void send_to_workers(const ToWorker& message);
+  /// Waits until `done`, handling what comes meanwhile.
+  void wait_until(const std::function<bool()>& done);
+  /// Which slab a worker holds; 0 where the volume is not cut.
+  int slab_of_worker(int worker) const { return slabs_ > 0 ? worker % slabs_ : 0; }
+  /// What all slabs are like together, told to all workers.
+  void describe_slabs();
+  /// A copy to each that is not lost.
+  template <class Message>
+  void send_to_workers(const Message& message) {
+    for (int w = 0; w < topology_.workers; ++w) {
+      const Rank rank = topology_.worker(w);
+      if (!liveness_.is_lost(rank)) post_.to_worker(rank, message);
+    }
+  }
   void check_interrupted() const;
   void check_liveness();
   void lose(Rank rank);
@@ -180,8 +205,11 @@ class Cluster {
   std::deque<ClusterEvent> events_;  // not yet handed out, oldest first
 
   std::function<void(double)> progress_;
-  std::size_t mapped_ = 0;  // workers that hold the volume
+  std::size_t mapped_ = 0;  // workers that hold the volume, or their slab
   std::optional<VolumeInfo> volume_;
+  int slabs_ = 0;                      // 0: the volume is not cut
+  std::map<int, SlabReader> readers_;  // by slab: the first rank that has read it
+  std::map<int, std::vector<glm::dvec3>> visible_by_slab_;
 
   std::uint32_t revision_ = 0;
   std::vector<std::string> features_;

@@ -58,7 +58,8 @@ Json ranks_of(const std::vector<RankState>& ranks) {
     list.push_back({{"rank", i},
                     {"role", role_name(ranks[i].role)},
                     {"host", ranks[i].host},
-                    {"busySeconds", ranks[i].busy_seconds}});
+                    {"busySeconds", ranks[i].busy_seconds},
+                    {"peakMemoryBytes", ranks[i].peak_memory_bytes}});
   }
   return list;
 }

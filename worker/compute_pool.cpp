@@ -1,21 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "worker/compute_pool.h"
 
-#include <sched.h>
-
 #include <utility>
 
+#include "common/base/thread_time.h"
 #include "worker/refine_tile.h"
+#include "worker/thread_priority.h"
 
 namespace goldthread {
 namespace {
-
-/// Under SCHED_IDLE a computing thread leaves the core the moment a rank that moves messages wants
-/// it; needs no privilege. If it is refused, the thread computes as any other would.
-void give_way() {
-  const sched_param parameters{};
-  sched_setscheduler(0, SCHED_IDLE, &parameters);
-}
 
 /// What tiles of a view may keep; a tile of 64×64 pixels takes about 150 kB.
 constexpr std::size_t kMostTileBytes = std::size_t{1} << 29;
@@ -100,11 +93,11 @@ void ComputePool::note_failure() {
 
 void ComputePool::cast(const CastView& view, const RenderTile& quantum,
                        std::unique_ptr<TileRefinement> tile, const std::stop_token& stop) {
-  const auto begin = std::chrono::steady_clock::now();
+  const auto begin = thread_time();
   auto result = refine_tile(view, quantum, std::move(tile), [&] {
     return epoch_.load(std::memory_order_relaxed) != quantum.epoch.value || stop.stop_requested();
   });
-  const auto cost = std::chrono::steady_clock::now() - begin;
+  const auto cost = thread_time() - begin;
   busy_ns_ += std::chrono::nanoseconds(cost).count();
   if (!result) return;
   const auto cost_us = std::chrono::duration_cast<std::chrono::microseconds>(cost).count();

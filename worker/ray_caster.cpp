@@ -31,6 +31,7 @@ class CommittedScene {
     hits_something_ = glm::all(glm::greaterThan(info.geometry.size, glm::ivec3(1)));
     terms_.step_mm = step_of(scene.step_mm, info.geometry, features_);
     terms_.field = field_layout_of(*volume_);
+    terms_.slab = slab_borders_of(*volume_);
     terms_.phong = phong_term_of(shading_, info);
     if (features_.isosurfaces)
       terms_.surfaces = surface_terms_of(material.isosurfaces, volume_->value_bias(), ambient);
@@ -59,8 +60,7 @@ class CommittedScene {
     std::vector<bool> visible(distances_.size());
     std::transform(distances_.begin(), distances_.end(), visible.begin(),
                    [](std::uint8_t distance) { return distance == kCellIsVisible; });
-    const glm::ivec3 counts = volume_->cell_counts();
-    visible.resize(static_cast<std::size_t>(counts.x) * counts.y * counts.z);  // without padding
+    visible.resize(volume_->cells().size());  // without padding
     return visible;
   }
   /// False where the field has no extent: a volume one voxel thick.
@@ -73,8 +73,12 @@ class CommittedScene {
         features_.isosurfaces ? std::span(material.isosurfaces) : std::span<const Isosurface>();
     const double margin = rows_ ? rows_->row_distance() : 0;
     const CellVisibility visible(function, surfaces, volume_->value_bias(), margin);
-    distances_ = cell_distances(volume_->cells(), counts, visible);
-    terms_.cells = {{counts.x, counts.y, counts.z}, distances_.data(), volume_->cells().data()};
+    const LayerRange layers = volume_->layers();
+    distances_ = cell_distances(volume_->cells(), {counts.x, counts.y, layers.count()}, visible);
+    const std::int64_t missing = std::int64_t(layers.first) * counts.x * counts.y;
+    terms_.cells = {{counts.x, counts.y, counts.z},
+                    distances_.data() - missing,
+                    volume_->cells().data() - missing};
   }
 
   std::shared_ptr<const Volume> volume_;
@@ -90,7 +94,7 @@ class CommittedScene {
 
 namespace {
 
-class RayCaster final : public SampleSource {
+class RayCaster final : public SampleSource, public SlabCaster {
  public:
   RayCaster(std::shared_ptr<const CommittedScene> scene, const Camera& camera, ImageSize size)
       : scene_(std::move(scene)),
@@ -111,7 +115,13 @@ class RayCaster final : public SampleSource {
     return scene_->kernel().cast({scene_->terms(), view_, positions, samples, surfaces});
   }
 
+  CastCounts advance(const RaySpan& rays, Stage stage) const override {
+    return scene_->kernel().cast(
+        {scene_->terms(), view_, rays.positions, rays.samples, rays.surfaces, stage});
+  }
+
   bool has_surfaces() const override { return scene_->features().isosurfaces; }
+  bool seeks_greatest() const override { return scene_->features().mip; }
 
  private:
   std::shared_ptr<const CommittedScene> scene_;
@@ -143,12 +153,15 @@ std::vector<glm::dvec3> visible_points(const CommittedScene& scene, std::size_t 
   const bool any = std::find(is_visible.begin(), is_visible.end(), true) != is_visible.end();
   const glm::ivec3 counts = volume.cell_counts();
   const VolumeGeometry& geometry = volume.info().geometry;
+  const LayerRange layers = volume.layers();
   const glm::dmat4 world_from_index = geometry.world_from_index();
   std::vector<glm::dvec3> all;
   for (std::size_t i = 0; i < is_visible.size(); ++i) {
     if (any && !is_visible[i]) continue;
     const int cell = static_cast<int>(i);
-    const glm::dvec3 place(cell % counts.x, cell / counts.x % counts.y, cell / counts.x / counts.y);
+    const int layer = layers.first + cell / counts.x / counts.y;
+    if (layer < volume.slab().first_layer || layer >= volume.slab().last_layer) continue;
+    const glm::dvec3 place(cell % counts.x, cell / counts.x % counts.y, layer);
     const glm::dvec3 last(geometry.size - 1);
     all.push_back(world_from_index *
                   glm::dvec4(glm::min(double(kCellEdge) * (place + 0.5), last), 1));
@@ -162,6 +175,17 @@ std::vector<glm::dvec3> visible_points(const CommittedScene& scene, std::size_t 
 std::shared_ptr<const SampleSource> make_ray_caster(std::shared_ptr<const CommittedScene> scene,
                                                     const Camera& camera, ImageSize size) {
   return std::make_shared<const RayCaster>(std::move(scene), camera, size);
+}
+
+std::shared_ptr<const SlabCaster> make_slab_caster(std::shared_ptr<const CommittedScene> scene,
+                                                   const Camera& camera, ImageSize size) {
+  return std::make_shared<const RayCaster>(std::move(scene), camera, size);
+}
+
+double half_step_in_slices(const CommittedScene& scene) {
+  const glm::dmat3 linear(scene.volume().info().geometry.index_from_world());
+  const glm::dvec3 along_z(linear[0].z, linear[1].z, linear[2].z);
+  return 0.5 * scene.terms().step_mm * glm::length(along_z);
 }
 
 }  // namespace goldthread

@@ -9,6 +9,7 @@
 #include "common/scene/scene.h"
 #include "common/volume/volume.h"
 #include "worker/sample_source.h"
+#include "worker/slabs/slab_caster.h"
 
 namespace goldthread {
 
@@ -26,11 +27,20 @@ std::vector<std::string> feature_names(const CommittedScene& scene);
 std::string kernel_name(const CommittedScene& scene);
 
 /// At most `most` places that the scene may show, in the world, mm: the middles of cells that are
-/// not empty, evenly chosen; of all cells where none is known to be visible.
+/// not empty, evenly chosen; of all cells where none is known to be visible. Of a slab its own.
 std::vector<glm::dvec3> visible_points(const CommittedScene& scene, std::size_t most);
 
 /// The ray caster for one view. Cheap: commit once, look often.
 std::shared_ptr<const SampleSource> make_ray_caster(std::shared_ptr<const CommittedScene> scene,
                                                     const Camera& camera, ImageSize size);
+
+/// The same for rays on their way through slabs; the scene's volume may be one.
+std::shared_ptr<const SlabCaster> make_slab_caster(std::shared_ptr<const CommittedScene> scene,
+                                                   const Camera& camera, ImageSize size);
+
+/// How many slices of voxels a segment may reach beyond the slab that its middle lies in: slabs
+/// hold kMostOverhang.
+double half_step_in_slices(const CommittedScene& scene);
+constexpr double kMostOverhang = 0.95;
 
 }  // namespace goldthread

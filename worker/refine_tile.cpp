@@ -57,9 +57,10 @@ std::optional<RefinedTile> refine_tile(const CastView& view, const RenderTile& q
   RefinedTile result;
   const auto cast = [&](std::span<const PixelPosition> positions, std::span<Sample> samples,
                         std::span<std::uint32_t> surfaces) {
-    for (std::size_t first = 0; first < positions.size(); first += kBatchRays) {
+    const std::size_t batch = view.source->batch_rays();
+    for (std::size_t first = 0; first < positions.size(); first += batch) {
       if (stale()) return false;
-      const std::size_t count = std::min(kBatchRays, positions.size() - first);
+      const std::size_t count = std::min(batch, positions.size() - first);
       result.counts +=
           view.source->cast(positions.subspan(first, count), samples.subspan(first, count),
                             surfaces.subspan(first, count));

@@ -13,10 +13,6 @@
 
 namespace goldthread {
 
-/// Rays between two looks at whether the work is still wanted: some tens of packets, about a
-/// millisecond.
-constexpr std::size_t kBatchRays = 512;
-
 struct RefinedTile {
   Samples samples;    ///< what the quantum changed, ready to be sent
   CastCounts counts;  ///< of the quantum's own steps

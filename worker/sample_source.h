@@ -3,6 +3,7 @@
 // Where samples come from: the ray caster, or the stub that by-passes it. A source is one view
 // (scene, volume, camera and image size), immutable, and may be asked from any number of threads.
 
+#include <cstddef>
 #include <cstdint>
 #include <span>
 
@@ -21,6 +22,10 @@ struct CastCounts {
   }
 };
 
+/// Rays between two looks at whether the work is still wanted: some tens of packets, about a
+/// millisecond.
+constexpr std::size_t kBatchRays = 512;
+
 class SampleSource {
  public:
   virtual ~SampleSource() = default;
@@ -34,6 +39,8 @@ class SampleSource {
   CastCounts cast(std::span<const PixelPosition> positions, std::span<Sample> samples) const {
     return cast(positions, samples, {});
   }
+  /// Rays that are best cast at a time: so few that work which is no longer wanted ends soon.
+  virtual std::size_t batch_rays() const { return kBatchRays; }
   /// Whether a ray can meet an isosurface; if not, all `surfaces` are 0.
   virtual bool has_surfaces() const { return false; }
 };

@@ -6,12 +6,12 @@
 #include <utility>
 
 #include "common/base/cores.h"
+#include "common/base/memory.h"
 #include "common/protocol/topology.h"
 #include "common/scene/scene_file.h"
 #include "common/tile/update_pattern.h"
 #include "common/transport/shared_memory.h"
 #include "common/volume/build_volume.h"
-#include "common/volume/volume_io.h"
 
 namespace goldthread {
 namespace {
@@ -21,6 +21,17 @@ constexpr std::chrono::seconds kFarewell{2};
 constexpr std::chrono::milliseconds kLoadingWait{20};
 /// That the master measures a camera's movement by.
 constexpr std::size_t kVisiblePoints = 64;
+
+/// A slab holds so much of its neighbours as segments of a certain length need.
+void expect_short_steps(const CommittedScene& scene) {
+  const double overhang = half_step_in_slices(scene);
+  if (overhang <= kMostOverhang) return;
+  throw FatalError({"--step",
+                    "is so long that rays cross " + std::to_string(2 * overhang) +
+                        " slices of the volume in one step, and slabs allow " +
+                        std::to_string(2 * kMostOverhang),
+                    "give a smaller --step, or --error", ExitStatus::kUsage});
+}
 
 }  // namespace
 
@@ -40,6 +51,7 @@ bool WorkerRole::run() {
   while (!stop_) {
     try {
       while (auto message = post_.receive<ToWorker>()) {
+        sender_ = message->first;
         std::visit([&](auto& value) { on(std::move(value)); }, message->second);
         heartbeat_.beat(post_);  // also when messages never end
       }
@@ -58,26 +70,21 @@ bool WorkerRole::run() {
 void WorkerRole::on(BeginSession message) {
   require(message.threads > 0 && message.compositors > 0, "was given a session without ranks");
   session_ = message;
-  pool_ =
-      std::make_unique<ComputePool>(message.threads, message.interactive, [this] { post_.wake(); });
+  const auto wake = [this] { post_.wake(); };
+  if (message.slabs > 0) {
+    const Topology topology{static_cast<int>(message.compositors),
+                            post_.size() - 1 - static_cast<int>(message.compositors)};
+    require(std::cmp_less_equal(message.slabs, topology.workers),
+            "was given more slabs than workers");
+    slabs_ = std::make_unique<SlabCrew>(topology, post_.rank(), message, wake);
+  }
+  pool_ = std::make_unique<ComputePool>(message.tiles, message.interactive, wake);
 }
 
 void WorkerRole::on(const LoadVolume& message) {
   // Beside this thread, so that the rank answers while it reads.
-  loading_ = std::async(std::launch::async, [this, message]() -> Result<LoadedBlock> {
-    LoadOptions options;
-    if (message.component >= 0) options.component = message.component;
-    options.progress = [this](double fraction) { load_fraction_ = static_cast<float>(fraction); };
-    try {
-      auto loaded = goldthread::load_volume(message.file, options);
-      if (!loaded) return loaded.failure();
-      const std::size_t bytes = Volume::block_bytes(loaded->info.geometry, loaded->info.type);
-      OwnedBlock block = make_shared_block(bytes);
-      fill_block(loaded->info, loaded->voxels(), {block.memory.get(), bytes});
-      return LoadedBlock{std::move(loaded->info), block.share, std::move(block.memory)};
-    } catch (const std::exception& error) {
-      return failure_of(message.file, error);
-    }
+  loading_ = std::async(std::launch::async, [this, message] {
+    return load_block(message, [this](double f) { load_fraction_ = static_cast<float>(f); });
   });
 }
 
@@ -95,16 +102,36 @@ void WorkerRole::finish_loading() {
     post_.to_master(RankFailed{block.failure()});
     return;
   }
-  volume_ = std::make_shared<const Volume>(block->info, std::move(block->memory));
-  post_.to_master(VolumeLoaded{std::move(block->info), block->share});
+  volume_ = std::make_shared<const Volume>(block->info, block->slab, std::move(block->memory));
+  post_.to_master(VolumeLoaded{std::move(block->info), block->slab, block->share});
 }
 
 void WorkerRole::on(MapVolume message) {
-  require(message.block.bytes == Volume::block_bytes(message.info.geometry, message.info.type),
+  require(message.block.bytes ==
+              Volume::block_bytes(message.info.geometry, message.info.type, message.slab),
           "was given a volume of another size than its block");
   auto memory = map_shared_block(message.block);
-  volume_ = std::make_shared<const Volume>(std::move(message.info), std::move(memory));
+  volume_ =
+      std::make_shared<const Volume>(std::move(message.info), message.slab, std::move(memory));
   post_.to_master(VolumeMapped{});
+}
+
+void WorkerRole::on(const CountVoxels& message) {
+  require(volume_ != nullptr, "was asked for voxels before it had any");
+  post_.to_master(VoxelCounts{count_voxels(*volume_, message.minimum, message.maximum)});
+}
+
+void WorkerRole::on(DescribeVolume message) {
+  require(volume_ && message.info.geometry == volume_->info().geometry &&
+              message.info.type == volume_->info().type,
+          "was told of another volume than it has");
+  volume_ =
+      std::make_shared<const Volume>(std::move(message.info), volume_->slab(), volume_->memory());
+}
+
+void WorkerRole::on(const WorkerGone& message) {
+  require(slabs_ != nullptr, "was told of a worker that it does not share slabs with");
+  slabs_->worker_gone(static_cast<int>(message.worker));
 }
 
 void WorkerRole::on(const CommitScene& message) {
@@ -112,6 +139,7 @@ void WorkerRole::on(const CommitScene& message) {
   const Scene scene = value_or_throw(
       parse_scene(message.scene_json, "the master's scene", {}, {.allow_internal = true}));
   scene_ = commit_scene(scene, volume_);
+  if (slabs_) expect_short_steps(*scene_);
   revision_ = message.revision;
   post_.to_master(SceneCommitted{revision_, feature_names(*scene_), kernel_name(*scene_),
                                  visible_points(*scene_, kVisiblePoints)});
@@ -121,11 +149,16 @@ void WorkerRole::on(const BeginView& message) {
   require(pool_ && scene_ && message.grid.valid() && message.scene_revision == revision_,
           "was given a view it cannot cast");
   view_ = message;
+  auto source = source_of(message);
   pool_->begin_view(std::make_shared<const CastView>(
       CastView{message.epoch, message.grid, message.refinement,
-               appearance_of(message.background, message.color_space),
-               make_source_(scene_, message.camera, message.grid.image), message.update,
-               message.frame % parts_of(message.update)}));
+               appearance_of(message.background, message.color_space), std::move(source),
+               message.update, message.frame % parts_of(message.update)}));
+}
+
+std::shared_ptr<const SampleSource> WorkerRole::source_of(const BeginView& view) {
+  if (!slabs_) return make_source_(scene_, view.camera, view.grid.image);
+  return slabs_->begin_view(view, scene_, volume_->info().geometry);
 }
 
 void WorkerRole::on(const RenderTile& message) {
@@ -135,7 +168,17 @@ void WorkerRole::on(const RenderTile& message) {
   pool_->push(message);
 }
 
+void WorkerRole::on(AdvanceRays message) {
+  require(slabs_ != nullptr, "was sent rays without slabs");
+  slabs_->take(std::move(message), sender_);
+}
+
+void WorkerRole::on(const RaysAdvanced& message) {
+  require(slabs_ && slabs_->complete(message), "was sent rays that it did not ask for");
+}
+
 void WorkerRole::send_done() {
+  if (slabs_) slabs_->send(post_);
   if (!pool_) return;
   if (const auto epoch = pool_->take_begun()) post_.to_master(ViewTaken{*epoch});
   for (ComputePool::Done& done : pool_->take_done()) {
@@ -148,9 +191,14 @@ void WorkerRole::send_done() {
 }
 
 void WorkerRole::on(const ReportCounters&) {
-  post_.to_master(Counters{post_.sent(), pool_ ? pool_->busy().count() : 0});
+  const double own = pool_ ? pool_->busy().count() : 0;
+  const double others = slabs_ ? slabs_->busy().count() : 0;
+  post_.to_master(Counters{post_.sent(), own + others, peak_memory_bytes()});
 }
 
-void WorkerRole::on(const Stop& message) { stop_ = message; }
+void WorkerRole::on(const Stop& message) {
+  stop_ = message;
+  if (slabs_) slabs_->stop();
+}
 
 }  // namespace goldthread

@@ -12,7 +12,9 @@
 #include "common/transport/heartbeat.h"
 #include "common/transport/post.h"
 #include "worker/compute_pool.h"
+#include "worker/load_block.h"
 #include "worker/ray_caster.h"
+#include "worker/slabs/slab_crew.h"
 
 namespace goldthread {
 
@@ -31,34 +33,37 @@ class WorkerRole {
   void on(BeginSession message);
   void on(const LoadVolume& message);
   void on(MapVolume message);
+  void on(const CountVoxels& message);
+  void on(DescribeVolume message);
+  void on(const WorkerGone& message);
   void on(const CommitScene& message);
   void on(const BeginView& message);
   void on(const RenderTile& message);
+  void on(AdvanceRays message);
+  void on(const RaysAdvanced& message);
   void on(const ReportCounters& message);
   void on(const Stop& message);
   /// Throws FatalError unless what the master sent makes sense.
   void require(bool good, const char* what) const;
   void send_done();
   void finish_loading();
-
-  struct LoadedBlock {
-    VolumeInfo info;
-    SharedBlock share;
-    std::shared_ptr<const std::byte> memory;
-  };
+  /// What casts the rays of a view: this worker, or all that hold a slab.
+  std::shared_ptr<const SampleSource> source_of(const BeginView& view);
 
   Post post_;
   SourceMaker make_source_;
   HeartbeatSender heartbeat_;
   std::optional<Stop> stop_;
+  Rank sender_;  ///< of the message at hand
   BeginSession session_;
   std::atomic<float> load_fraction_{0};
   float told_fraction_ = 0;
-  std::optional<std::future<Result<LoadedBlock>>> loading_;
+  std::optional<std::future<Result<VolumeBlock>>> loading_;
   std::shared_ptr<const Volume> volume_;
   std::uint32_t revision_ = 0;
   std::shared_ptr<const CommittedScene> scene_;
   std::optional<BeginView> view_;
+  std::unique_ptr<SlabCrew> slabs_;  ///< where the volume lies in slabs
   std::unique_ptr<ComputePool> pool_;
 };
 

@@ -23,7 +23,7 @@
 
 namespace goldthread {
 
-constexpr std::uint32_t kProtocolVersion = 2;
+constexpr std::uint32_t kProtocolVersion = 3;
 
 enum class Role : std::uint8_t { kMaster, kCompositor, kWorker };
 
@@ -102,11 +102,18 @@ struct LoadProgress {
   float fraction = 0;
   GOLDTHREAD_MESSAGE(LoadProgress, &LoadProgress::fraction)
 };
-/// A node's reader has the volume in memory that its neighbours may map.
+/// A node's reader has the volume, or a slab, in memory that its neighbours may map. Of a slab the
+/// statistics are its own, without a histogram.
 struct VolumeLoaded {
   VolumeInfo info;
+  Slab slab;
   SharedBlock block;
-  GOLDTHREAD_MESSAGE(VolumeLoaded, &VolumeLoaded::info, &VolumeLoaded::block)
+  GOLDTHREAD_MESSAGE(VolumeLoaded, &VolumeLoaded::info, &VolumeLoaded::slab, &VolumeLoaded::block)
+};
+/// A slab's own voxels by value, answering CountVoxels.
+struct VoxelCounts {
+  std::vector<std::uint64_t> histogram;
+  GOLDTHREAD_MESSAGE(VoxelCounts, &VoxelCounts::histogram)
 };
 /// A worker has mapped its node's volume.
 struct VolumeMapped {
@@ -174,7 +181,9 @@ struct MessageCount {
 struct Counters {
   std::vector<MessageCount> sent;
   double busy_seconds = 0;
-  GOLDTHREAD_MESSAGE(Counters, &Counters::sent, &Counters::busy_seconds)
+  std::uint64_t peak_memory_bytes = 0;  ///< of its process
+  GOLDTHREAD_MESSAGE(Counters, &Counters::sent, &Counters::busy_seconds,
+                     &Counters::peak_memory_bytes)
 };
 /// A rank cannot go on: the job ends with this line and status.
 struct RankFailed {
@@ -221,9 +230,9 @@ struct Audience {
 };
 
 using ToMaster =
-    std::variant<Hello, Heartbeat, LoadProgress, VolumeLoaded, VolumeMapped, SceneCommitted,
-                 ViewTaken, TileDone, BandReady, BandPicture, Counters, RankFailed, GatewayOpened,
-                 ViewerCamera, ViewerEdit, ViewerSize, ViewerDisplay, Audience>;
+    std::variant<Hello, Heartbeat, LoadProgress, VolumeLoaded, VoxelCounts, VolumeMapped,
+                 SceneCommitted, ViewTaken, TileDone, BandReady, BandPicture, Counters, RankFailed,
+                 GatewayOpened, ViewerCamera, ViewerEdit, ViewerSize, ViewerDisplay, Audience>;
 
 // ---- the master to a worker, or to a compositor
 // ---------------------------------------------------
@@ -233,20 +242,42 @@ struct BeginSession {
   std::uint32_t threads = 1;  ///< compute threads of this rank
   bool interactive = false;   ///< compute only when nothing else wants the core
   std::uint32_t compositors = 1;
+  std::uint32_t slabs = 0;  ///< parts of the volume; 0: each node has all of it
+  std::uint32_t tiles = 1;  ///< that a worker casts at a time; with slabs most wait for others
   GOLDTHREAD_MESSAGE(BeginSession, &BeginSession::threads, &BeginSession::interactive,
-                     &BeginSession::compositors)
+                     &BeginSession::compositors, &BeginSession::slabs, &BeginSession::tiles)
 };
-/// Read the volume for all ranks of this node.
+/// Read the volume for all ranks of this node; or a slab, for those that have the same one.
 struct LoadVolume {
   std::string file;
   std::int32_t component = -1;  ///< −1: the file has one, or the first
-  GOLDTHREAD_MESSAGE(LoadVolume, &LoadVolume::file, &LoadVolume::component)
+  std::uint32_t slab = 0;
+  std::uint32_t slabs = 0;  ///< 0: all of it
+  GOLDTHREAD_MESSAGE(LoadVolume, &LoadVolume::file, &LoadVolume::component, &LoadVolume::slab,
+                     &LoadVolume::slabs)
 };
-/// Use the volume that a neighbour has read.
+/// Use the volume, or slab, that a neighbour has read.
 struct MapVolume {
   VolumeInfo info;
+  Slab slab;
   SharedBlock block;
-  GOLDTHREAD_MESSAGE(MapVolume, &MapVolume::info, &MapVolume::block)
+  GOLDTHREAD_MESSAGE(MapVolume, &MapVolume::info, &MapVolume::slab, &MapVolume::block)
+};
+/// Count a slab's own voxels in 256 equal bins over the whole volume's values.
+struct CountVoxels {
+  double minimum = 0;
+  double maximum = 0;
+  GOLDTHREAD_MESSAGE(CountVoxels, &CountVoxels::minimum, &CountVoxels::maximum)
+};
+/// What the whole volume is like, now that all its slabs are known.
+struct DescribeVolume {
+  VolumeInfo info;
+  GOLDTHREAD_MESSAGE(DescribeVolume, &DescribeVolume::info)
+};
+/// A worker is gone: what it was asked for is asked of another one with the same slab.
+struct WorkerGone {
+  std::uint32_t worker = 0;  ///< its index
+  GOLDTHREAD_MESSAGE(WorkerGone, &WorkerGone::worker)
 };
 /// The resolved scene, as a scene file without defaults left open.
 struct CommitScene {
@@ -289,8 +320,33 @@ struct Stop {
   GOLDTHREAD_MESSAGE(Stop, &Stop::ranks_lost)
 };
 
-using ToWorker = std::variant<BeginSession, LoadVolume, MapVolume, CommitScene, BeginView,
-                              RenderTile, ReportCounters, Stop>;
+// ---- from a worker to another one
+// -----------------------------------------------------------------
+
+/// Take rays through your slab: `count` positions (PixelPosition), then what each has gathered
+/// (Sample), then, if the scene has isosurfaces, what it has met (u32).
+struct AdvanceRays {
+  Epoch epoch;
+  std::uint32_t job = 0;   ///< the asker's number for it
+  bool completes = false;  ///< mip: the exact value around the best, and done; else: gather
+  std::uint32_t count = 0;
+  Buffer packed;
+  GOLDTHREAD_MESSAGE(AdvanceRays, &AdvanceRays::epoch, &AdvanceRays::job, &AdvanceRays::completes,
+                     &AdvanceRays::count, &AdvanceRays::packed)
+};
+/// The answer: what they have gathered now (Sample, and u32 as asked).
+struct RaysAdvanced {
+  Epoch epoch;
+  std::uint32_t job = 0;
+  std::uint64_t taken = 0;  ///< field evaluations
+  Buffer packed;
+  GOLDTHREAD_MESSAGE(RaysAdvanced, &RaysAdvanced::epoch, &RaysAdvanced::job, &RaysAdvanced::taken,
+                     &RaysAdvanced::packed)
+};
+
+using ToWorker = std::variant<BeginSession, LoadVolume, MapVolume, CountVoxels, DescribeVolume,
+                              WorkerGone, CommitScene, BeginView, RenderTile, AdvanceRays,
+                              RaysAdvanced, ReportCounters, Stop>;
 
 // ---- to a compositor
 // ------------------------------------------------------------------------------

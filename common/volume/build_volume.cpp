@@ -63,35 +63,60 @@ class Binning {
   double minimum_, scale_;
 };
 
-// One volume of one type on its way into its block.
+// Slices of voxels in memory, from slice `first` on.
+template <class T>
+struct SliceWindow {
+  const T* voxels = nullptr;
+  int first = 0;
+};
+
+// What a slab knows of cells that are not its own.
+constexpr CellRange kAnything{-std::numeric_limits<float>::infinity(),
+                              std::numeric_limits<float>::infinity()};
+
+// One volume of one type, or a slab of it, on its way into its block.
 template <class T>
 class BlockFiller {
  public:
   using S = Stored<T>;
 
-  BlockFiller(const VolumeGeometry& geometry, VoxelType type, const std::byte* linear,
-              std::byte* block)
+  BlockFiller(const VolumeGeometry& geometry, VoxelType type, const Slab& slab, std::byte* block)
       : size_(geometry.size),
-        layout_(geometry.size, int(sizeof(S))),
+        slab_(slab),
+        layout_(geometry.size, int(sizeof(S)), slab),
         cell_counts_(Volume::cell_counts(geometry)),
-        blocks_(glm::max(
-            cell_counts_,
-            (glm::ivec3(layout_.columns * ColumnLayout::kEdge, layout_.slices) + kCellEdge - 1) /
-                kCellEdge)),
-        linear_(reinterpret_cast<const T*>(linear)),
+        known_layers_(known_layers(slab, geometry.size.z)),
+        rows_(std::max(cell_counts_.y, layers_of(layout_.columns.y * ColumnLayout::kEdge))),
         voxels_(block),
-        cells_(reinterpret_cast<CellRange*>(block + Volume::cells_offset(geometry, type))) {}
+        cells_(reinterpret_cast<CellRange*>(block + Volume::cells_offset(geometry, type, slab))) {}
 
-  void run(VolumeInfo& info) {
-    const int rows = blocks_.y * blocks_.z;
-    tbb::parallel_for(tbb::blocked_range<int>(0, rows), [&](const tbb::blocked_range<int>& range) {
+  /// Layers of blocks of 8³ that hold all stored voxels and all own cells.
+  LayerRange layers() const {
+    return {layout_.first_slice / kCellEdge,
+            std::max(slab_.last_layer, layers_of(layout_.first_slice + layout_.slices))};
+  }
+  /// The slices that layers [first, last) are made from.
+  LayerRange slices_for(LayerRange range) const {
+    return {std::clamp(range.first * kCellEdge - 1, 0, size_.z - 1),
+            std::clamp(range.last * kCellEdge, 0, size_.z - 1) + 1};
+  }
+
+  void fill(LayerRange range, SliceWindow<T> window) {
+    const int rows = rows_ * range.count();
+    tbb::parallel_for(tbb::blocked_range<int>(0, rows), [&](const tbb::blocked_range<int>& part) {
       Tally& tally = tallies_.local();
       tally.counts.resize(kCountedValues);
       RowBuffers buffers(size_.x, layout_.columns.x * ColumnLayout::kEdge);
-      for (int row = range.begin(); row < range.end(); ++row)
-        fill_row_of_blocks(row % blocks_.y, row / blocks_.y, buffers, tally);
+      for (int row = part.begin(); row < part.end(); ++row)
+        fill_row_of_blocks(row % rows_, range.first + row / rows_, window, buffers, tally);
     });
-    finish(info);
+  }
+
+  /// All of the layers are filled. `linear` is the whole volume's voxels if they are at hand: of
+  /// floats a histogram is made from them.
+  void finish(VolumeInfo& info, const T* linear) {
+    mark_unknown_cells();
+    summarize(info, linear);
   }
 
  private:
@@ -115,11 +140,12 @@ class BlockFiller {
 
   // The stored rows and the cells of a row of blocks of 8×8. Reads 10×10 rows: stored rows begin
   // one voxel before the cells, which end on their upper neighbours' voxels.
-  void fill_row_of_blocks(int by, int bz, RowBuffers& buffers, Tally& tally) {
+  void fill_row_of_blocks(int by, int bz, SliceWindow<T> window, RowBuffers& buffers,
+                          Tally& tally) {
     std::fill(buffers.least.begin(), buffers.least.end(), kGreatest);
     std::fill(buffers.greatest.begin(), buffers.greatest.end(), kLeast);
     const glm::ivec2 extent(size_.y, size_.z);
-    const bool has_cells = by < cell_counts_.y && bz < cell_counts_.z;
+    const bool has_cells = by < cell_counts_.y && bz >= slab_.first_layer && bz < slab_.last_layer;
     for (int z = -1; z <= kCellEdge; ++z) {
       for (int y = -1; y <= kCellEdge; ++y) {
         const glm::ivec2 wanted(by * kCellEdge + y, bz * kCellEdge + z);
@@ -127,10 +153,11 @@ class BlockFiller {
         const glm::ivec2 stored = wanted + ColumnLayout::kApron;
         const bool is_stored = y + 1 < kCellEdge && z + 1 < kCellEdge &&
                                stored.x < layout_.columns.y * ColumnLayout::kEdge &&
-                               stored.y < layout_.slices;
+                               stored.y >= layout_.first_slice &&
+                               stored.y < layout_.first_slice + layout_.slices;
         const bool in_cells = has_cells && y >= 0 && z >= 0 && at == wanted;
         if (!is_stored && !in_cells) continue;
-        read_row(at.x, at.y, buffers.row);
+        read_row(at.x, at.y, window, buffers.row);
         if (is_stored) write_row(stored.x, stored.y, buffers.row);
         if (in_cells) widen_ranges(buffers);
         if (in_cells && y < kCellEdge && z < kCellEdge) count_row(buffers.row, tally);
@@ -140,9 +167,10 @@ class BlockFiller {
   }
 
   // A row of voxels, its ends repeated to fill the row.
-  void read_row(int y, int z, std::vector<S>& row) const {
+  void read_row(int y, int z, SliceWindow<T> window, std::vector<S>& row) const {
     const auto width = std::size_t(size_.x);
-    const T* from = linear_ + (std::size_t(z) * std::size_t(size_.y) + std::size_t(y)) * width;
+    const T* from = window.voxels +
+                    (std::size_t(z - window.first) * std::size_t(size_.y) + std::size_t(y)) * width;
     S* to = row.data() + ColumnLayout::kApron;
     for (std::size_t x = 0; x < width; ++x) to[x] = stored_from(from[x]);
     std::fill(row.data(), to, to[0]);
@@ -191,7 +219,8 @@ class BlockFiller {
   }
 
   void write_cells(int by, int bz, const RowBuffers& buffers, Tally& tally) {
-    const std::int64_t first = (std::int64_t(bz) * cell_counts_.y + by) * cell_counts_.x;
+    const std::int64_t first =
+        (std::int64_t(bz - known_layers_.first) * cell_counts_.y + by) * cell_counts_.x;
     for (int cx = 0; cx < cell_counts_.x; ++cx) {
       const int end = std::min((cx + 1) * kCellEdge + 1, size_.x);
       CellRange range{std::numeric_limits<float>::infinity(),
@@ -206,7 +235,15 @@ class BlockFiller {
     }
   }
 
-  void finish(VolumeInfo& info) {
+  void mark_unknown_cells() {
+    const std::int64_t in_layer = std::int64_t(cell_counts_.x) * cell_counts_.y;
+    for (int layer = known_layers_.first; layer < known_layers_.last; ++layer) {
+      if (layer >= slab_.first_layer && layer < slab_.last_layer) continue;
+      std::fill_n(cells_ + (layer - known_layers_.first) * in_layer, in_layer, kAnything);
+    }
+  }
+
+  void summarize(VolumeInfo& info, const T* linear) {
     Tally total;
     total.counts.resize(kCountedValues);
     for (const Tally& tally : tallies_) {
@@ -220,7 +257,7 @@ class BlockFiller {
     const bool any = total.minimum <= total.maximum;
     const Binning bin(any ? total.minimum : 0, any ? total.maximum : 0);
     if constexpr (std::is_floating_point_v<T>) {
-      if (any) bin_floats(bin, info.histogram);
+      if (any && linear != nullptr) bin_floats(bin, linear, info.histogram);
     } else {
       for (std::size_t value = 0; value < total.counts.size(); ++value)
         if (total.counts[value]) info.histogram[bin(double(value))] += total.counts[value];
@@ -231,7 +268,8 @@ class BlockFiller {
     info.maximum = any ? total.maximum + bias : 0;
   }
 
-  void bin_floats(const Binning& bin, std::vector<std::uint64_t>& histogram) const {
+  void bin_floats(const Binning& bin, const T* linear,
+                  std::vector<std::uint64_t>& histogram) const {
     const std::size_t count = std::size_t(size_.x) * std::size_t(size_.y) * std::size_t(size_.z);
     tbb::enumerable_thread_specific<std::vector<std::uint64_t>> parts{
         std::vector<std::uint64_t>(kBins)};
@@ -239,21 +277,42 @@ class BlockFiller {
                       [&](const tbb::blocked_range<std::size_t>& range) {
                         auto& part = parts.local();
                         for (std::size_t i = range.begin(); i < range.end(); ++i)
-                          if (std::isfinite(linear_[i])) ++part[bin(double(linear_[i]))];
+                          if (std::isfinite(linear[i])) ++part[bin(double(linear[i]))];
                       });
     for (const auto& part : parts)
       for (std::size_t i = 0; i < kBins; ++i) histogram[i] += part[i];
   }
 
   glm::ivec3 size_;
+  Slab slab_;
   ColumnLayout layout_;
   glm::ivec3 cell_counts_;
-  glm::ivec3 blocks_;  ///< of 8³ voxels that hold all cells and all stored voxels
-  const T* linear_;
+  LayerRange known_layers_;
+  int rows_;  ///< of blocks of 8³ voxels along y that hold all cells and all stored voxels
   std::byte* voxels_;
   CellRange* cells_;
   tbb::enumerable_thread_specific<Tally> tallies_;
 };
+
+/// Calls `f` with a number of the type.
+template <class F>
+void with_voxel_type(VoxelType type, F f) {
+  switch (type) {
+    case VoxelType::kUInt8:
+      return f(std::uint8_t{});
+    case VoxelType::kInt8:
+      return f(std::int8_t{});
+    case VoxelType::kUInt16:
+      return f(std::uint16_t{});
+    case VoxelType::kInt16:
+      return f(std::int16_t{});
+    case VoxelType::kFloat32:
+      return f(float{});
+  }
+}
+
+/// Of a file's slices in memory at a time, beside the block that is made from them.
+constexpr std::int64_t kWindowBytes = std::int64_t(1) << 25;
 
 struct AlignedDelete {
   void operator()(const std::byte* memory) const {
@@ -267,26 +326,60 @@ void fill_block(VolumeInfo& info, std::span<const std::byte> linear_voxels,
                 std::span<std::byte> block) {
   assert(linear_voxels.size() == info.geometry.voxel_count() * bytes_per_voxel(info.type));
   assert(block.size() >= Volume::block_bytes(info.geometry, info.type));
-  const auto fill = [&]<class T>(T) {
-    BlockFiller<T>(info.geometry, info.type, linear_voxels.data(), block.data()).run(info);
-  };
-  switch (info.type) {
-    case VoxelType::kUInt8:
-      fill(std::uint8_t{});
-      break;
-    case VoxelType::kInt8:
-      fill(std::int8_t{});
-      break;
-    case VoxelType::kUInt16:
-      fill(std::uint16_t{});
-      break;
-    case VoxelType::kInt16:
-      fill(std::int16_t{});
-      break;
-    case VoxelType::kFloat32:
-      fill(float{});
-      break;
-  }
+  with_voxel_type(info.type, [&]<class T>(T) {
+    BlockFiller<T> filler(info.geometry, info.type, whole_slab(info.geometry.size.z), block.data());
+    const T* linear = reinterpret_cast<const T*>(linear_voxels.data());
+    filler.fill(filler.layers(), {linear, 0});
+    filler.finish(info, linear);
+  });
+}
+
+std::optional<Failure> fill_slab(VolumeInfo& info, const Slab& slab, const SliceReader& read,
+                                 std::span<std::byte> block,
+                                 const std::function<void(double)>& progress) {
+  assert(block.size() >= Volume::block_bytes(info.geometry, info.type, slab));
+  std::optional<Failure> failure;
+  with_voxel_type(info.type, [&]<class T>(T) {
+    BlockFiller<T> filler(info.geometry, info.type, slab, block.data());
+    const glm::i64vec3 size = info.geometry.size;
+    const std::int64_t slice_bytes = size.x * size.y * std::int64_t(sizeof(T));
+    const int at_once = int(std::max<std::int64_t>(1, kWindowBytes / slice_bytes / kCellEdge));
+    std::vector<T> window;
+    const LayerRange all = filler.layers();
+    for (int first = all.first; first < all.last && !failure; first += at_once) {
+      const LayerRange range{first, std::min(first + at_once, all.last)};
+      const LayerRange slices = filler.slices_for(range);
+      window.resize(std::size_t(size.x * size.y * slices.count()));
+      failure = read(slices.first, slices.count(), std::as_writable_bytes(std::span(window)));
+      if (failure) return;
+      filler.fill(range, {window.data(), slices.first});
+      if (progress) progress(double(range.last - all.first) / double(all.count()));
+    }
+    if (!failure) filler.finish(info, nullptr);
+  });
+  return failure;
+}
+
+std::vector<std::uint64_t> count_voxels(const Volume& volume, double minimum, double maximum) {
+  const glm::ivec3 size = volume.info().geometry.size;
+  const LayerRange own = own_slices(volume.slab(), size.z);
+  const Binning bin(minimum, maximum);
+  tbb::enumerable_thread_specific<std::vector<std::uint64_t>> parts{
+      std::vector<std::uint64_t>(kBins)};
+  tbb::parallel_for(tbb::blocked_range<int>(own.first, own.last),
+                    [&](const tbb::blocked_range<int>& range) {
+                      auto& part = parts.local();
+                      for (int z = range.begin(); z < range.end(); ++z)
+                        for (int y = 0; y < size.y; ++y)
+                          for (int x = 0; x < size.x; ++x) {
+                            const double value = volume.at(x, y, z);
+                            if (std::isfinite(value)) ++part[bin(value)];
+                          }
+                    });
+  std::vector<std::uint64_t> histogram(kBins);
+  for (const auto& part : parts)
+    for (std::size_t i = 0; i < kBins; ++i) histogram[i] += part[i];
+  return histogram;
 }
 
 std::shared_ptr<const Volume> build_volume(VolumeInfo info,

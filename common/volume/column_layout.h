@@ -14,6 +14,8 @@
 #include <cstdint>
 #include <glm/glm.hpp>
 
+#include "common/volume/slab.h"
+
 namespace goldthread {
 
 struct ColumnLayout {
@@ -25,15 +27,20 @@ struct ColumnLayout {
   glm::ivec3 size{0, 0, 0};      ///< voxels
   int planes = 1;                ///< bytes of a voxel
   glm::ivec2 columns{0, 0};      ///< in x and y, at least 2 each
+  int first_slice = 0;           ///< stored z of the first slice that is there
   int slices = 0;                ///< of a column in use, at least kWindow
   std::int64_t plane_bytes = 0;  ///< of one plane of one column
 
   ColumnLayout() = default;
   ColumnLayout(glm::ivec3 voxels, int bytes_per_voxel)
+      : ColumnLayout(voxels, bytes_per_voxel, whole_slab(voxels.z)) {}
+  /// Of a slab of `voxels`.
+  ColumnLayout(glm::ivec3 voxels, int bytes_per_voxel, const Slab& slab)
       : size(voxels),
         planes(bytes_per_voxel),
         columns(glm::max((glm::ivec2(voxels) + 2 * kApron + kEdge - 1) / kEdge, 2)),
-        slices(std::max(voxels.z + 2 * kApron, kWindow)) {
+        first_slice(stored_slices(slab, voxels.z).first),
+        slices(std::max(stored_slices(slab, voxels.z).count(), kWindow)) {
     // An odd number of cache lines: equal places of neighbouring columns fall into different sets.
     const std::int64_t lines = (std::int64_t(slices) * kSlice + kLine - 1) / kLine;
     plane_bytes = (lines | 1) * kLine;
@@ -46,8 +53,8 @@ struct ColumnLayout {
   /// The first byte of a voxel, given by its stored coordinates; the others follow plane_bytes
   /// apart.
   std::int64_t offset(int x, int y, int z) const {
-    return (y / kEdge) * row_bytes() + (x / kEdge) * column_bytes() + std::int64_t(z) * kSlice +
-           (y % kEdge) * kEdge + x % kEdge;
+    return (y / kEdge) * row_bytes() + (x / kEdge) * column_bytes() +
+           std::int64_t(z - first_slice) * kSlice + (y % kEdge) * kEdge + x % kEdge;
   }
 
  private:

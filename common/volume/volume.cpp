@@ -41,17 +41,30 @@ glm::dmat4 VolumeGeometry::index_from_world() const {
 
 Volume::Volume(VolumeInfo info, std::shared_ptr<const std::byte> memory)
     : info_(std::move(info)),
-      layout_(info_.geometry.size, int(bytes_per_voxel(info_.type))),
+      slab_(whole_slab(info_.geometry.size.z)),
+      layout_(info_.geometry.size, int(bytes_per_voxel(info_.type)), slab_),
       memory_(std::move(memory)) {}
 
-std::size_t Volume::cells_offset(const VolumeGeometry& geometry, VoxelType type) {
-  return aligned(std::size_t(ColumnLayout(geometry.size, int(bytes_per_voxel(type))).byte_count()));
+Volume::Volume(VolumeInfo info, const Slab& slab, std::shared_ptr<const std::byte> memory)
+    : info_(std::move(info)),
+      slab_(slab),
+      layout_(info_.geometry.size, int(bytes_per_voxel(info_.type)), slab_),
+      memory_(std::move(memory)) {}
+
+std::size_t Volume::cells_offset(const VolumeGeometry& geometry, VoxelType type, const Slab& slab) {
+  const ColumnLayout layout(geometry.size, int(bytes_per_voxel(type)), slab);
+  return aligned(std::size_t(layout.byte_count()));
 }
 
 std::size_t Volume::block_bytes(const VolumeGeometry& geometry, VoxelType type) {
+  return block_bytes(geometry, type, whole_slab(geometry.size.z));
+}
+
+std::size_t Volume::block_bytes(const VolumeGeometry& geometry, VoxelType type, const Slab& slab) {
   const glm::ivec3 cells = cell_counts(geometry);
-  return aligned(cells_offset(geometry, type) + std::size_t(cells.x) * std::size_t(cells.y) *
-                                                    std::size_t(cells.z) * sizeof(CellRange));
+  const int layers = known_layers(slab, geometry.size.z).count();
+  return aligned(cells_offset(geometry, type, slab) + std::size_t(cells.x) * std::size_t(cells.y) *
+                                                          std::size_t(layers) * sizeof(CellRange));
 }
 
 glm::ivec3 Volume::cell_counts(const VolumeGeometry& geometry) {
@@ -60,9 +73,9 @@ glm::ivec3 Volume::cell_counts(const VolumeGeometry& geometry) {
 
 std::span<const CellRange> Volume::cells() const {
   const glm::ivec3 counts = cell_counts();
-  const std::byte* first = memory_.get() + cells_offset(info_.geometry, info_.type);
+  const std::byte* first = memory_.get() + cells_offset(info_.geometry, info_.type, slab_);
   return {reinterpret_cast<const CellRange*>(first),
-          std::size_t(counts.x) * std::size_t(counts.y) * std::size_t(counts.z)};
+          std::size_t(counts.x) * std::size_t(counts.y) * std::size_t(layers().count())};
 }
 
 double Volume::value_bias() const {

@@ -94,35 +94,45 @@ struct CellRange {
 /// value = stored + value_bias(). Float voxels that are not finite are stored as a quiet NaN, so
 /// that kernels test for one thing only. Beyond the volume's border its outermost voxels are
 /// repeated.
+/// A Volume may be a slab: its info is that of the whole, and of voxels and cells it holds a part.
 class Volume {
  public:
   Volume() = default;
   /// `memory` must hold block_bytes(info) bytes, aligned to 64, and lives as long as the Volume.
   Volume(VolumeInfo info, std::shared_ptr<const std::byte> memory);
+  Volume(VolumeInfo info, const Slab& slab, std::shared_ptr<const std::byte> memory);
 
   static std::size_t block_bytes(const VolumeGeometry& geometry, VoxelType type);
-  /// Where the CellRanges begin in the block, and how many of them lie along each axis.
-  static std::size_t cells_offset(const VolumeGeometry& geometry, VoxelType type);
+  static std::size_t block_bytes(const VolumeGeometry& geometry, VoxelType type, const Slab& slab);
+  /// Where the CellRanges begin in the block.
+  static std::size_t cells_offset(const VolumeGeometry& geometry, VoxelType type, const Slab& slab);
+  /// Cells along each axis of the whole volume.
   static glm::ivec3 cell_counts(const VolumeGeometry& geometry);
 
   const VolumeInfo& info() const { return info_; }
   const ColumnLayout& layout() const { return layout_; }
   const std::byte* voxels() const { return memory_.get(); }
-  /// Cells in x-fastest order, cell_counts() of them; cell c covers voxel indices [8c, 8c+8].
+  const std::shared_ptr<const std::byte>& memory() const { return memory_; }
+  const Slab& slab() const { return slab_; }
+  bool is_whole() const { return goldthread::is_whole(slab_, info_.geometry.size.z); }
+  /// The layers of cells() along z: all, or of a slab those around its own too, whose cells may
+  /// hold anything.
+  LayerRange layers() const { return known_layers(slab_, info_.geometry.size.z); }
+  /// Cells in x-fastest order, layer by layer; cell c covers voxel indices [8c, 8c+8].
   std::span<const CellRange> cells() const;
   glm::ivec3 cell_counts() const { return cell_counts(info_.geometry); }
   /// What to add to a stored number to get the data value: −128, −32768 or 0.
   double value_bias() const;
-  /// The data value of one voxel; indices must lie inside. Slow: for tests and tools.
+  /// The data value of one voxel; indices must lie inside what is held. Slow: for tests and tools.
   double at(int i, int j, int k) const;
 
  private:
   VolumeInfo info_;
+  Slab slab_;
   ColumnLayout layout_;
   std::shared_ptr<const std::byte> memory_;
 };
 
-constexpr int kCellEdge = 8;
 constexpr std::size_t kBlockAlignment = 64;
 
 /// "uint8", "int16", "float32" …

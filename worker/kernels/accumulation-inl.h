@@ -22,6 +22,13 @@ class Accumulation {
         alpha_(hn::Zero(kFloats)),
         transmittance_(hn::Set(kFloats, 1.0F)) {}
 
+  /// Goes on with what sums() was elsewhere.
+  HWY_INLINE void resume(const Floats3& color, Floats alpha) {
+    color_ = color;
+    alpha_ = alpha;
+    transmittance_ = hn::Sub(hn::Set(kFloats, 1.0F), alpha_);
+  }
+
   /// Adds what is behind all so far; colour not multiplied by opacity.
   HWY_INLINE void add(const Floats3& color, Floats opacity) {
     const Floats weight = hn::Mul(transmittance_, opacity);
@@ -37,6 +44,10 @@ class Accumulation {
   HWY_INLINE FloatMask is_open() const {
     return hn::Gt(transmittance_, hn::Set(kFloats, kLeastTransmittance));
   }
+
+  /// As it is, to go on with.
+  HWY_INLINE Floats3 color_so_far() const { return color_; }
+  HWY_INLINE Floats alpha_so_far() const { return alpha_; }
 
   HWY_INLINE Floats3 color() const {
     const Floats share = closing_share();

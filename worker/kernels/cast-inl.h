@@ -35,8 +35,41 @@ HWY_INLINE void write_surfaces(Unsigneds met, std::uint32_t* surfaces, std::size
   std::copy_n(lanes, count, surfaces);
 }
 
+/// What `count` rays have gathered before, in lanes; the others nothing.
+struct Gathered {
+  Floats3 color;
+  Floats alpha;
+  Unsigneds met;
+
+  HWY_INLINE Gathered(const CastArguments& arguments, std::size_t first, std::size_t count) {
+    HWY_ALIGN float lanes[4][kLanes] = {};
+    HWY_ALIGN std::uint32_t numbers[kLanes] = {};
+    for (std::size_t i = 0; i < count; ++i) {
+      const Sample& sample = arguments.samples[first + i];
+      lanes[0][i] = sample.red;
+      lanes[1][i] = sample.green;
+      lanes[2][i] = sample.blue;
+      lanes[3][i] = sample.alpha;
+      if (!arguments.surfaces.empty()) numbers[i] = arguments.surfaces[first + i];
+    }
+    color = {hn::Load(kFloats, lanes[0]), hn::Load(kFloats, lanes[1]), hn::Load(kFloats, lanes[2])};
+    alpha = hn::Load(kFloats, lanes[3]);
+    met = hn::Load(kUnsigned, numbers);
+  }
+};
+
+/// As samples, or as they are, to go on with in the next slab.
+HWY_INLINE void write_sum(const Accumulation& sum, bool closes, Sample* samples,
+                          std::size_t count) {
+  if (closes)
+    write_samples(sum.color(), sum.alpha(), samples, count);
+  else
+    write_samples(sum.color_so_far(), sum.alpha_so_far(), samples, count);
+}
+
 template <Storage kStorage, Features kFeatures>
 HWY_NOINLINE CastCounts cast(const CastArguments& arguments) {
+  const Stage stage = arguments.stage;
   CastCounts counts;
   counts.rays = arguments.positions.size();
   RayColumns columns;
@@ -45,7 +78,8 @@ HWY_NOINLINE CastCounts cast(const CastArguments& arguments) {
     count = packet_size(arguments.positions.subspan(i), kLanes);
     Sample* samples = arguments.samples.data() + i;
     if (!set_up_rays(arguments.scene, arguments.view, arguments.positions.data() + i, count,
-                     columns)) {
+                     columns) &&
+        !stage.resumes) {
       std::fill_n(samples, count, Sample{});
       continue;
     }
@@ -53,19 +87,35 @@ HWY_NOINLINE CastCounts cast(const CastArguments& arguments) {
     // Packets must not leave this function, not even into a lambda: they live in registers.
     if constexpr (kFeatures.mip) {
       GreatestValue<kStorage> packet(arguments, rays);
+      if (stage.resumes) {
+        const Gathered before(arguments, i, count);
+        packet.resume(before.color.x, before.color.y);
+      }
       counts.samples += packet.run();
-      write_samples(packet.color(), packet.alpha(), samples, count);
+      if (stage.closes)
+        write_samples(packet.color(), packet.alpha(), samples, count);
+      else
+        write_samples({packet.best(), packet.best_at(), hn::Zero(kFloats)}, hn::Zero(kFloats),
+                      samples, count);
     } else if constexpr (kFeatures.isosurfaces) {
       const FineRays fine(columns);
       SurfaceMarch<kStorage, kFeatures.dvr, kFeatures.shading> packet(arguments, rays, fine);
+      if (stage.resumes) {
+        const Gathered before(arguments, i, count);
+        packet.resume(before.color, before.alpha, before.met);
+      }
       counts.samples += packet.run();
-      write_samples(packet.sum().color(), packet.sum().alpha(), samples, count);
+      write_sum(packet.sum(), stage.closes, samples, count);
       if (!arguments.surfaces.empty())
         write_surfaces(packet.met(), arguments.surfaces.data() + i, count);
     } else {
       RayMarch<kStorage, kFeatures.shading> packet(arguments, rays);
+      if (stage.resumes) {
+        const Gathered before(arguments, i, count);
+        packet.resume(before.color, before.alpha);
+      }
       counts.samples += packet.run();
-      write_samples(packet.sum().color(), packet.sum().alpha(), samples, count);
+      write_sum(packet.sum(), stage.closes, samples, count);
     }
   }
   return counts;

@@ -26,6 +26,7 @@ class GreatestValue {
   HWY_INLINE GreatestValue(const CastArguments& arguments, const Rays& rays)
       : scene_(arguments.scene),
         field_(arguments.scene.field),
+        stage_(arguments.stage),
         rays_(rays),
         walk_(arguments.scene, rays),
         steps_(rays)
@@ -37,22 +38,18 @@ class GreatestValue {
   }
 
   HWY_INLINE std::uint64_t run() {
-    const FloatMask hit = rays_.hit();
-    consider(hit, rays_.first);
-    consider(hit, rays_.last);
-    for (int known = next_promising(); known > 0; known = next_promising()) {
-      // What to beat is asked one run late, so that nothing waits for the last sample.
-      const Floats before = best_;
-      if (const int whole = steps_.whole(); whole > 0) {
-        take_whole(std::min(known, whole));
-      } else {
-        take_parts(std::min(known, steps_.until_whole()));
-      }
-      to_beat_ = before;
-    }
-    refine(hit);
+    if (stage_.marches) march();
+    if (stage_.completes) refine(has_best());
     return samples_;
   }
+
+  /// Rays bring what they have found in the slabs before.
+  HWY_INLINE void resume(Floats best, Floats best_at) {
+    best_ = to_beat_ = best;
+    best_at_ = best_at;
+  }
+  HWY_INLINE Floats best() const { return best_; }
+  HWY_INLINE Floats best_at() const { return best_at_; }
 
   HWY_INLINE Floats3 color() const {
     const Optics optics = look_up(scene_.transfer, hn::IfThenElseZero(found(), best_));
@@ -63,11 +60,33 @@ class GreatestValue {
   HWY_INLINE Floats alpha() const { return hn::IfThenElseZero(found(), hn::Set(kFloats, 1.0F)); }
 
  private:
+  HWY_INLINE void march() {
+    const FloatMask hit = rays_.hit();
+    consider(hn::And(hit, hn::Eq(rays_.begin, hn::Zero(kFloats))), rays_.first);
+    consider(hn::And(hit, hn::Gt(rays_.until, rays_.last)), rays_.last);
+    for (int known = next_promising(); known > 0; known = next_promising()) {
+      // What to beat is asked one run late, so that nothing waits for the last sample.
+      const Floats before = best_;
+      if (const int whole = steps_.whole(); whole > 0) {
+        take_whole(std::min(known, whole));
+      } else {
+        take_parts(std::min(known, steps_.until_whole()));
+      }
+      to_beat_ = before;
+    }
+  }
+
+  /// Rays whose greatest value lies in this slab.
+  HWY_INLINE FloatMask has_best() const {
+    const FloatMask inside = hn::And(hn::Ge(best_at_, rays_.begin), hn::Lt(best_at_, rays_.until));
+    return hn::And(rays_.hit(), inside);
+  }
+
   /// False where the ray misses the volume, or met nothing but voxels that are not finite.
   HWY_INLINE FloatMask found() const { return is_finite(best_); }
 
   HWY_INLINE void consider(FloatMask active, Floats steps) {
-    consider(active, steps, field_.value(locate(rays_.at(steps, scene_.field.upper)), active));
+    consider(active, steps, field_.value(locate(rays_.at(steps, scene_.field)), active));
   }
   HWY_INLINE void consider(FloatMask active, Floats steps, Floats value) {
     const FloatMask better = hn::And(hn::And(active, is_finite(value)), hn::Gt(value, best_));
@@ -107,11 +126,11 @@ class GreatestValue {
     GOLDTHREAD_UNROLL
     for (int i = 0; i < kTogether; ++i) {
       middles[i] = hn::Add(steps_.index(), hn::Set(kFloats, 0.5F + float(i)));
-      places[i] = locate(rays_.at(middles[i], scene_.field.upper));
+      places[i] = locate(rays_.at(middles[i], scene_.field));
     }
     if constexpr (kApart) {
       const Floats ahead = hn::Add(steps_.index(), hn::Set(kFloats, float(kAhead)));
-      const CellPlace soon = locate(rays_.at(ahead, scene_.field.upper));
+      const CellPlace soon = locate(rays_.at(ahead, scene_.field));
       field_.values_apart(places, soon, rays_.hit(), values);
     } else {
       field_.values(beam_, steps_.step(), places, rays_.hit(), values);
@@ -130,7 +149,7 @@ class GreatestValue {
       const Floats index = steps_.index();
       const Segment segment = segment_of(rays_, index);
       const Floats at = middle(segment.begin, segment.end);
-      const auto cube = walk_.look_for_more(rays_.at(at, scene_.field.upper), at, to_beat_);
+      const auto cube = walk_.look_for_more(rays_.at(at, scene_.field), at, to_beat_);
       const FloatMask promising = hn::And(steps_.inside(), cube.visible);
       const Floats known = hn::Sub(segment_after(index, cube.exit), index);
       if (!hn::AllFalse(kFloats, promising)) return PacketSteps::average(promising, known);
@@ -156,7 +175,7 @@ class GreatestValue {
 
   HWY_INLINE Passage refine_at(FloatMask lanes, Floats steps) {
     const Floats inside = hn::Min(hn::Max(steps, rays_.first), rays_.last);
-    CellPlace place = locate(rays_.at(inside, scene_.field.upper));
+    CellPlace place = locate(rays_.at(inside, scene_.field));
     const Floats3 cell{hn::ConvertTo(kFloats, place.at.x), hn::ConvertTo(kFloats, place.at.y),
                        hn::ConvertTo(kFloats, place.at.z)};
     Passage passage{rays_.first, rays_.last};
@@ -195,6 +214,7 @@ class GreatestValue {
 
   const KernelScene& scene_;
   FieldType field_;
+  Stage stage_;
   const Rays& rays_;
   CellWalk walk_;
 

@@ -11,15 +11,19 @@
 #include "common/tile/sample.h"
 #include "common/volume/volume.h"
 #include "worker/sample_source.h"
+#include "worker/slabs/stage.h"
 
 namespace goldthread {
 
-/// ColumnLayout as plain numbers.
+/// ColumnLayout as plain numbers. Coordinates are the whole volume's, of a slab too.
 struct FieldLayout {
-  const std::uint8_t* voxels = nullptr;
-  std::int32_t size[3] = {0, 0, 0};  ///< voxels, each at least 2
-  float upper[3] = {0, 0, 0};        ///< the greatest float below size − 1: positions end here
-  /// Greatest stored coordinates where a window begins; and nothing, for vectors of four.
+  const std::uint8_t* voxels = nullptr;  ///< where slice 0 lies, or would
+  std::int32_t size[3] = {0, 0, 0};      ///< voxels, each at least 2
+  /// Whatever rounding does, no position lies outside these: 0 and the greatest float below size −
+  /// 1; along z what the slab holds.
+  float lower[3] = {0, 0, 0}, upper[3] = {0, 0, 0};
+  /// Least and greatest stored coordinates where a window begins; and nothing, for vectors of four.
+  alignas(16) std::int32_t first_origin[4] = {0, 0, 0, 0};
   alignas(16) std::int32_t last_origin[4] = {0, 0, 0, 0};
   std::int64_t plane_bytes = 0, column_bytes = 0, row_bytes = 0;
 };
@@ -28,11 +32,20 @@ struct FieldLayout {
 constexpr std::uint8_t kMostCellDistance = 127;
 constexpr std::uint8_t kCellIsVisible = 128;
 
-/// Cells of 8³ voxels, for leaping over emptiness.
+/// Cells of 8³ voxels, for leaping over emptiness. Pointers as if layer 0 were there.
 struct CellGrid {
   std::int32_t counts[3] = {0, 0, 0};
   const std::uint8_t* distances = nullptr;  ///< of cell_distances()
   const CellRange* ranges = nullptr;
+};
+
+/// Which segments of a ray belong to a slab: those whose middle has low ≤ z < high, in voxels. So
+/// each belongs to one slab, and what a ray gathers from slab to slab is to the bit what it gathers
+/// in the whole volume.
+struct SlabBorders {
+  bool is_whole = true;  ///< there are no others
+  double low = 0;        ///< −∞ of the first slab
+  double high = 0;       ///< +∞ of the last one
 };
 
 /// The transfer function as few segments of value, which are kept in registers: segment i holds
@@ -92,6 +105,7 @@ struct LightTerm {
 /// Everything that does not depend on the camera.
 struct KernelScene {
   FieldLayout field;
+  SlabBorders slab;
   CellGrid cells;
   TransferTable transfer;
   std::vector<SurfaceTerm> surfaces;  ///< in ascending order of value
@@ -119,11 +133,7 @@ struct CastArguments {
   std::span<const PixelPosition> positions;
   std::span<Sample> samples;          ///< as many as positions
   std::span<std::uint32_t> surfaces;  ///< as many, filled with 0; or none: not wanted
+  Stage stage = {};
 };
-
-/// A ray ends where less than this share of what lies behind could still be seen. What it has met
-/// then stands for the rest: its colour is divided by its opacity, so that a colour channel is off
-/// by less than this times the difference of the two, and opacity by less than this, 0.25/255.
-constexpr float kLeastTransmittance = 1.0F / 1024;
 
 }  // namespace goldthread

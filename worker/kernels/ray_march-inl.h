@@ -58,6 +58,13 @@ class RayMarch {
     return samples_;
   }
 
+  /// Rays bring what they have gathered in the slabs before.
+  HWY_INLINE void resume(const Floats3& color, Floats alpha) {
+    sum_.resume(color, alpha);
+    alive_ = hn::And(alive_, sum_.is_open());
+    wanted_ = alive_;
+  }
+
   HWY_INLINE const Accumulation& sum() const { return sum_; }
 
  private:
@@ -69,7 +76,7 @@ class RayMarch {
       const Floats index = steps_.index();
       const Segment segment = segment_of(rays_, index);
       const Floats middle_of = middle(segment.begin, segment.end);
-      const auto cube = walk_.look(rays_.at(middle_of, scene_.field.upper), middle_of);
+      const auto cube = walk_.look(rays_.at(middle_of, scene_.field), middle_of);
       const FloatMask inside = hn::And(wanted_, steps_.inside());
       const FloatMask visible = hn::And(inside, cube.visible);
       const Floats known = hn::Sub(segment_after(index, cube.exit), index);
@@ -82,7 +89,7 @@ class RayMarch {
   /// Of the whole segment `ahead` of the next one.
   HWY_INLINE Floats3 middle_of_whole(int ahead) const {
     const Floats steps = hn::Add(steps_.index(), hn::Set(kFloats, 0.5F + float(ahead)));
-    return rays_.at(steps, scene_.field.upper);
+    return rays_.at(steps, scene_.field);
   }
 
   /// The next steps, in which all rays have whole segments.
@@ -145,7 +152,7 @@ class RayMarch {
   HWY_INLINE void take_parts(int steps) {
     for (; steps > 0 && !hn::AllFalse(kFloats, alive_); --steps) {
       const Segment segment = segment_of(rays_, steps_.index());
-      const Floats3 position = rays_.at(middle(segment.begin, segment.end), scene_.field.upper);
+      const Floats3 position = rays_.at(middle(segment.begin, segment.end), scene_.field);
       const CellPlace place = locate(position);
       const FloatMask inside = steps_.inside();
       Floats value = field_.value(place, inside);

@@ -27,7 +27,9 @@ struct alignas(64) RayColumns {
   float direction[3][kLanes];   ///< voxel indices per step
   float first[kLanes];          ///< where the volume begins, in [0, 1]
   float last[kLanes];           ///< where the volume ends, in (segments − 1, segments]
-  float segments[kLanes];       ///< 0: the volume is missed
+  float begin[kLanes];          ///< the first segment in the slab
+  float segments[kLanes];       ///< the one after the last in the slab; begin: it is missed
+  float until[kLanes];          ///< where the ray leaves the slab; far where it leaves the volume
   float start_rest[3][kLanes];  ///< what rounding took from start and direction
   float direction_rest[3][kLanes];
   float delay[kLanes];  ///< first segment's number, less the least one in the packet
@@ -49,11 +51,12 @@ struct Span {
 
 /// A component of 0 makes 0·∞ in the usual slab test: such an axis decides all or nothing. The
 /// faces belong to the volume.
-HWY_INLINE Span clip(const double* origin, const Doubles (&direction)[3], const float* upper) {
+HWY_INLINE Span clip(const double* origin, const Doubles (&direction)[3],
+                     const std::int32_t* size) {
   const Doubles infinite = hn::Set(kDoubles, std::numeric_limits<double>::infinity());
   Span span{hn::Zero(kDoubles), infinite};
   for (int axis = 0; axis < 3; ++axis) {
-    const double extent = std::ceil(double(upper[axis]));
+    const double extent = double(size[axis] - 1);
     const auto along = hn::Lt(hn::Abs(direction[axis]), hn::Set(kDoubles, 1e-30));
     const Doubles divisor = hn::IfThenElse(along, hn::Set(kDoubles, 1.0), direction[axis]);
     const Doubles inverse = hn::Div(hn::Set(kDoubles, 1.0), divisor);
@@ -82,11 +85,55 @@ HWY_INLINE void store_with_rest(Doubles v, float* to, float* rest) {
   store_as_floats(hn::Sub(v, hn::PromoteTo(kDoubles, rounded)), rest);
 }
 
+/// A ray's segments in doubles, in steps from the camera, and where it runs along z, in voxels.
+struct RaySegments {
+  double entry, exit;  ///< of the volume
+  double first;        ///< number of the first segment
+  double count;
+  double start_z, way_z;
+
+  double middle_z(double index) const {
+    const double begin = std::max(first + index, entry), end = std::min(first + index + 1, exit);
+    return start_z + 0.5 * (begin + end) * way_z;
+  }
+  /// The first segment, or else `count`, whose middle has reached z on the way.
+  double first_beyond(double z) const {
+    const auto is_beyond = [&](double index) {
+      return way_z > 0 ? middle_z(index) >= z : middle_z(index) < z;
+    };
+    const double guess = std::ceil((z - start_z) / way_z - first - 0.5);
+    double index = guess >= 0 && guess <= count ? guess : guess < 0 ? 0 : count;
+    while (index > 0 && is_beyond(index - 1)) --index;
+    while (index < count && !is_beyond(index)) ++index;
+    return index;
+  }
+};
+
+/// Takes lane `i` to those of its segments that belong to the slab. Every rank decides so from the
+/// same doubles.
+HWY_INLINE void keep_to_slab(const SlabBorders& slab, const RaySegments& ray, std::size_t i,
+                             RayColumns& rays) {
+  double begin = 0, end = ray.count;
+  if (ray.way_z > 0) {
+    begin = ray.first_beyond(slab.low);
+    end = ray.first_beyond(slab.high);
+  } else if (ray.way_z < 0) {
+    begin = ray.first_beyond(slab.high);
+    end = ray.first_beyond(slab.low);
+  } else if (!(ray.start_z >= slab.low && ray.start_z < slab.high)) {
+    end = 0;
+  }
+  rays.begin[i] = float(begin);
+  rays.segments[i] = float(std::max(begin, end));
+  if (end < ray.count) rays.until[i] = rays.segments[i];
+}
+
 /// Rays through `count` ≤ kLanes positions; the others miss. Returns whether any ray hits.
 HWY_INLINE bool set_up_rays(const KernelScene& scene, const KernelView& view,
                             const PixelPosition* positions, std::size_t count, RayColumns& rays) {
   constexpr std::size_t kWidth = hn::MaxLanes(DoubleTag());
   HWY_ALIGN double x[kLanes], y[kLanes], number[kLanes];
+  HWY_ALIGN double entries[kLanes], exits[kLanes], ways_z[kLanes];
   HWY_ALIGN double wanted[kLanes];
   for (std::size_t i = 0; i < kLanes; ++i) {
     const PixelPosition position = positions[i < count ? i : 0];
@@ -111,7 +158,7 @@ HWY_INLINE bool set_up_rays(const KernelScene& scene, const KernelView& view,
                                            hn::MulAdd(v, hn::Set(kDoubles, view.up[axis]),
                                                       hn::Set(kDoubles, view.forward[axis]))),
                                 length);
-    const Span span = clip(view.origin, direction, scene.field.upper);
+    const Span span = clip(view.origin, direction, scene.field.size);
     const auto hit = hn::And(hn::Gt(span.exit, span.entry),
                              hn::Gt(hn::Load(kDoubles, wanted + i), hn::Zero(kDoubles)));
     any = any || !hn::AllFalse(kDoubles, hit);
@@ -122,6 +169,9 @@ HWY_INLINE bool set_up_rays(const KernelScene& scene, const KernelView& view,
     store_as_floats(hn::Sub(exit, first), rays.last + i);
     store_as_floats(hn::Sub(hn::Ceil(exit), first), rays.segments + i);
     hn::Store(hn::IfThenElse(hit, first, hn::Set(kDoubles, 1e300)), kDoubles, number + i);
+    hn::Store(entry, kDoubles, entries + i);
+    hn::Store(exit, kDoubles, exits + i);
+    hn::Store(hn::Mul(direction[2], step), kDoubles, ways_z + i);
     for (int axis = 0; axis < 3; ++axis) {
       const Doubles way = hn::Mul(direction[axis], step);
       const Doubles start = hn::MulAdd(first, way, hn::Set(kDoubles, view.origin[axis]));
@@ -132,14 +182,22 @@ HWY_INLINE bool set_up_rays(const KernelScene& scene, const KernelView& view,
     }
   }
   const double least = *std::min_element(number, number + kLanes);
-  for (std::size_t i = 0; i < kLanes; ++i)
+  for (std::size_t i = 0; i < kLanes; ++i) {
     rays.delay[i] = rays.segments[i] > 0 ? float(number[i] - least) : 0.0F;
+    rays.begin[i] = 0;
+    rays.until[i] = 1e30F;
+    if (scene.slab.is_whole || !(rays.segments[i] > 0)) continue;
+    keep_to_slab(
+        scene.slab,
+        {entries[i], exits[i], number[i], double(rays.segments[i]), view.origin[2], ways_z[i]}, i,
+        rays);
+  }
   return any;
 }
 
 struct Rays {
   Floats3 start, direction;
-  Floats first, last, segments, delay;
+  Floats first, last, begin, segments, until, delay;
 
   HWY_INLINE explicit Rays(const RayColumns& rays)
       : start{hn::Load(kFloats, rays.start[0]), hn::Load(kFloats, rays.start[1]),
@@ -148,10 +206,12 @@ struct Rays {
                   hn::Load(kFloats, rays.direction[2])},
         first(hn::Load(kFloats, rays.first)),
         last(hn::Load(kFloats, rays.last)),
+        begin(hn::Load(kFloats, rays.begin)),
         segments(hn::Load(kFloats, rays.segments)),
+        until(hn::Load(kFloats, rays.until)),
         delay(hn::Load(kFloats, rays.delay)) {}
 
-  HWY_INLINE FloatMask hit() const { return hn::Gt(segments, hn::Zero(kFloats)); }
+  HWY_INLINE FloatMask hit() const { return hn::Gt(segments, begin); }
 
   /// The position after `steps`, never by adding up.
   HWY_INLINE Floats3 at(Floats steps) const {
@@ -159,36 +219,40 @@ struct Rays {
             hn::MulAdd(steps, direction.z, start.z)};
   }
 
-  /// The same, kept from leaving the volume by rounding.
-  HWY_INLINE Floats3 at(Floats steps, const float* upper) const {
-    const auto inside = [&](Floats v, float limit) HWY_ATTR {
-      return hn::Min(hn::Max(v, hn::Zero(kFloats)), hn::Set(kFloats, limit));
-    };
-    return {inside(hn::MulAdd(steps, direction.x, start.x), upper[0]),
-            inside(hn::MulAdd(steps, direction.y, start.y), upper[1]),
-            inside(hn::MulAdd(steps, direction.z, start.z), upper[2])};
+  /// The same, kept from leaving the volume, or the slab, by rounding.
+  HWY_INLINE Floats3 at(Floats steps, const FieldLayout& field) const {
+    const auto inside = [&](Floats v, Floats low, float high)
+                            HWY_ATTR { return hn::Min(hn::Max(v, low), hn::Set(kFloats, high)); };
+    const Floats zero = hn::Zero(kFloats);
+    return {inside(hn::MulAdd(steps, direction.x, start.x), zero, field.upper[0]),
+            inside(hn::MulAdd(steps, direction.y, start.y), zero, field.upper[1]),
+            inside(hn::MulAdd(steps, direction.z, start.z), hn::Set(kFloats, field.lower[2]),
+                   field.upper[2])};
   }
 };
 
 /// Where a packet is whose rays go in step.
 class PacketSteps {
  public:
-  HWY_INLINE explicit PacketSteps(const Rays& rays) : rays_(rays), index_(hn::Neg(rays.delay)) {
+  HWY_INLINE explicit PacketSteps(const Rays& rays) : rays_(rays) {
     const FloatMask hit = rays.hit();
-    const Floats from = hn::Add(hn::Ceil(rays.first), rays.delay);
-    const Floats until = hn::Add(hn::Floor(rays.last), rays.delay);
+    const Floats far = hn::Set(kFloats, 1e9F);
+    const Floats begin = hn::Add(rays.begin, rays.delay);
+    const Floats from = hn::Add(hn::Max(hn::Ceil(rays.first), rays.begin), rays.delay);
+    const Floats until = hn::Add(hn::Min(hn::Floor(rays.last), rays.segments), rays.delay);
     const Floats end = hn::Add(rays.segments, rays.delay);
     whole_from_ = hn::GetLane(hn::MaxOfLanes(kFloats, hn::IfThenElseZero(hit, from)));
-    whole_until_ =
-        hn::GetLane(hn::MinOfLanes(kFloats, hn::IfThenElse(hit, until, hn::Set(kFloats, 1e9F))));
+    whole_until_ = hn::GetLane(hn::MinOfLanes(kFloats, hn::IfThenElse(hit, until, far)));
     end_ = hn::GetLane(hn::MaxOfLanes(kFloats, hn::IfThenElseZero(hit, end)));
+    step_ = hn::GetLane(hn::MinOfLanes(kFloats, hn::IfThenElse(hit, begin, far)));
+    index_ = hn::Sub(hn::Set(kFloats, step_), rays.delay);
   }
 
   /// The segment that comes next, of each ray; negative before its first.
   HWY_INLINE Floats index() const { return index_; }
   /// Rays that have such a segment.
   HWY_INLINE FloatMask inside() const {
-    return hn::And(hn::Ge(index_, hn::Zero(kFloats)), hn::Lt(index_, rays_.segments));
+    return hn::And(hn::Ge(index_, rays_.begin), hn::Lt(index_, rays_.segments));
   }
   /// Counted from the packet's first segment.
   HWY_INLINE float step() const { return step_; }
@@ -212,7 +276,8 @@ class PacketSteps {
   /// it knows, or enters the volume; to the end where none goes on.
   HWY_INLINE void leap(FloatMask rays, Floats known) {
     const Floats far = hn::Set(kFloats, 1e6F);
-    const Floats way = hn::IfThenElse(hn::Lt(index_, hn::Zero(kFloats)), hn::Neg(index_), known);
+    const Floats way =
+        hn::IfThenElse(hn::Lt(index_, rays_.begin), hn::Sub(rays_.begin, index_), known);
     const FloatMask go_on = hn::And(rays, hn::Lt(index_, rays_.segments));
     advance(hn::GetLane(hn::MinOfLanes(kFloats, hn::IfThenElse(go_on, way, far))));
   }
@@ -224,7 +289,7 @@ class PacketSteps {
  private:
   const Rays& rays_;
   Floats index_;
-  float step_ = 0, whole_from_, whole_until_, end_;
+  float step_, whole_from_, whole_until_, end_;
 };
 
 #if HWY_TARGET != HWY_SCALAR

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <glm/gtc/constants.hpp>
+#include <limits>
 
 #include "common/image/color.h"
 
@@ -90,18 +91,34 @@ double step_for_error(double error, const VolumeGeometry& geometry, Features fea
 FieldLayout field_layout_of(const Volume& volume) {
   const ColumnLayout& layout = volume.layout();
   FieldLayout field;
-  field.voxels = reinterpret_cast<const std::uint8_t*>(volume.voxels());
+  field.voxels = reinterpret_cast<const std::uint8_t*>(volume.voxels()) -
+                 std::int64_t(layout.first_slice) * ColumnLayout::kSlice;
   for (int axis = 0; axis < 3; ++axis) {
     field.size[axis] = layout.size[axis];
     field.upper[axis] = std::nextafter(float(layout.size[axis] - 1), 0.0F);
   }
+  const Slab& slab = volume.slab();
+  // A slab's rays go up to a voxel beyond its border.
+  field.lower[2] = float(std::max(slab.first_layer * kCellEdge - 1, 0));
+  field.upper[2] =
+      std::nextafter(float(std::min(slab.last_layer * kCellEdge + 1, layout.size.z - 1)), 0.0F);
+  field.first_origin[2] = layout.first_slice;
   field.last_origin[0] = (layout.columns.x - 2) * ColumnLayout::kEdge;
   field.last_origin[1] = (layout.columns.y - 2) * ColumnLayout::kEdge;
-  field.last_origin[2] = layout.slices - ColumnLayout::kWindow;
+  field.last_origin[2] = layout.first_slice + layout.slices - ColumnLayout::kWindow;
   field.plane_bytes = layout.plane_bytes;
   field.column_bytes = layout.column_bytes();
   field.row_bytes = layout.row_bytes();
   return field;
+}
+
+SlabBorders slab_borders_of(const Volume& volume) {
+  constexpr double kInfinity = std::numeric_limits<double>::infinity();
+  const Slab& slab = volume.slab();
+  const bool is_first = slab.first_layer == 0;
+  const bool is_last = slab.last_layer == volume.cell_counts().z;
+  return {volume.is_whole(), is_first ? -kInfinity : double(slab.first_layer) * kCellEdge,
+          is_last ? kInfinity : double(slab.last_layer) * kCellEdge};
 }
 
 std::vector<SurfaceTerm> surface_terms_of(const std::vector<Isosurface>& surfaces,

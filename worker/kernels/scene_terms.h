@@ -33,6 +33,7 @@ double step_of(double wanted_mm, const VolumeGeometry& geometry, Features featur
 double step_for_error(double error, const VolumeGeometry& geometry, Features features);
 
 FieldLayout field_layout_of(const Volume& volume);
+SlabBorders slab_borders_of(const Volume& volume);
 std::vector<SurfaceTerm> surface_terms_of(const std::vector<Isosurface>& surfaces,
                                           double value_bias, double color_factor);
 PhongTerm phong_term_of(const Shading& shading, const VolumeInfo& info);

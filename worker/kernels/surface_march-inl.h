@@ -35,19 +35,27 @@ class SurfaceMarch {
         step_mm_(float(arguments.scene.step_mm)),
         per_step_{inverse(rays.direction.x), inverse(rays.direction.y), inverse(rays.direction.z)},
         company_(company_of(rays)),
-        alive_(hn::Gt(rays.segments, hn::Zero(kFloats))),
+        alive_(rays.hit()),
         at_(rays.first),
         integrated_(rays.first) {}
 
   /// Returns how many samples were taken: cells visited, and those of emission and absorption.
   HWY_INLINE std::uint64_t run() {
     enter(alive_);
+    enter_midway();
     while (!hn::AllFalse(kFloats, alive_)) {
       look();
       if (hn::AllFalse(kFloats, alive_)) break;
       visit(near_the_last());
     }
     return samples_;
+  }
+
+  /// Rays bring what they have gathered in the slabs before.
+  HWY_INLINE void resume(const Floats3& color, Floats alpha, Unsigneds met) {
+    sum_.resume(color, alpha);
+    met_ = met;
+    alive_ = hn::And(alive_, sum_.is_open());
   }
 
   HWY_INLINE const Accumulation& sum() const { return sum_; }
@@ -80,11 +88,27 @@ class SurfaceMarch {
 
   /// Puts rays into the cells around where they are.
   HWY_INLINE void enter(FloatMask lanes) {
-    const Floats3 position = rays_.at(at_, scene_.field.upper);
+    const Floats3 position = rays_.at(at_, scene_.field);
     const auto put = [&](Floats cell, Floats p)
                          HWY_ATTR { return hn::IfThenElse(lanes, hn::Floor(p), cell); };
     cell_ = {put(cell_.x, position.x), put(cell_.y, position.y), put(cell_.z, position.z)};
     value_is_stale_ = hn::Or(value_is_stale_, lanes);
+  }
+
+  /// Rays that come from another slab begin where they entered the cell in which they are handed
+  /// over, or the one before: what they meet in it is found as in the whole volume, and counts in
+  /// the slab whose segment it lies in.
+  HWY_INLINE void enter_midway() {
+    const FloatMask midway = hn::And(alive_, hn::Gt(rays_.begin, hn::Zero(kFloats)));
+    if (hn::AllFalse(kFloats, midway)) return;
+    const Floats back =
+        hn::MulAdd(rays_.begin, hn::Set(kFloats, 1.0F - 1e-6F), hn::Set(kFloats, -0.01F));
+    integrated_ = hn::IfThenElse(midway, hn::Max(integrated_, rays_.begin), integrated_);
+    at_ = hn::IfThenElse(midway, hn::Max(rays_.first, back), at_);
+    enter(midway);
+    const Floats3 behind = hits_of_faces(/*ahead=*/false);
+    const Floats entry = hn::Max(behind.x, hn::Max(behind.y, behind.z));
+    at_ = hn::IfThenElse(midway, hn::Max(rays_.first, entry), at_);
   }
 
   /// Takes rays that are about to enter the unknown over what is empty.
@@ -92,7 +116,7 @@ class SurfaceMarch {
     while (true) {
       const FloatMask unsure = hn::And(alive_, hn::Ge(at_, known_until_));
       if (hn::AllFalse(kFloats, unsure)) return;
-      const auto cube = walk_.look(rays_.at(at_, scene_.field.upper), at_);
+      const auto cube = walk_.look(rays_.at(at_, scene_.field), at_);
       const FloatMask gains = hn::Gt(cube.exit, hn::Add(at_, hn::Set(kFloats, 1.0F)));
       const FloatMask leaps = hn::And(unsure, hn::AndNot(cube.visible, gains));
       // The last bit of the empty cube is gone through cell by cell: its end is known to rounding.
@@ -109,15 +133,16 @@ class SurfaceMarch {
         integrate(open, hn::Min(begun, rays_.last), /*to_the_end=*/true);
       }
       at_ = hn::IfThenElse(leaps, hn::Min(cube.exit, rays_.last), at_);
-      integrated_ = hn::IfThenElse(leaps, hn::Max(integrated_, at_), integrated_);
-      alive_ = hn::And(alive_, hn::Lt(at_, rays_.last));
+      // On with whole segments: what is integrated does not depend on how far a leap went.
+      integrated_ = hn::IfThenElse(leaps, hn::Max(integrated_, hn::Floor(at_)), integrated_);
+      alive_ = hn::And(alive_, hn::Lt(at_, hn::Min(rays_.last, rays_.until)));
       enter(leaps);
     }
   }
 
   /// The cell that each of `lanes` is in, and on to the next one.
   HWY_INLINE void visit(FloatMask lanes) {
-    const Floats3 ahead = hits_of_faces();
+    const Floats3 ahead = hits_of_faces(/*ahead=*/true);
     const Floats exit =
         hn::Max(at_, hn::Min(hn::Min(ahead.x, ahead.y), hn::Min(ahead.z, rays_.last)));
     Floats corners[8];
@@ -131,24 +156,27 @@ class SurfaceMarch {
     value_ = hn::IfThenElse(passed, corners[0], value_);
     value_is_stale_ = hn::AndNot(lanes, value_is_stale_);
     value_is_stale_ = hn::Or(value_is_stale_, hn::AndNot(finite, lanes));
-    if constexpr (kDvr) integrate(lanes, exit, /*to_the_end=*/false);
+    const Floats last = hn::Min(rays_.last, rays_.until);
+    if constexpr (kDvr) integrate(lanes, hn::Min(exit, last), /*to_the_end=*/false);
     const FloatMask stays = step_over(lanes, ahead, exit);
-    const FloatMask ends = hn::AndNot(hn::And(stays, hn::Lt(exit, rays_.last)), lanes);
+    const FloatMask ends = hn::AndNot(hn::And(stays, hn::Lt(exit, last)), lanes);
     if constexpr (kDvr) {
-      if (!hn::AllFalse(kFloats, ends)) integrate(ends, rays_.last, /*to_the_end=*/true);
+      if (!hn::AllFalse(kFloats, ends)) integrate(ends, last, /*to_the_end=*/true);
     }
     alive_ = hn::And(hn::AndNot(ends, alive_), sum_.is_open());
   }
 
-  /// Where the rays meet the faces of their cells, in steps.
-  HWY_INLINE Floats3 hits_of_faces() const {
+  /// Where the rays meet the faces of their cells, `ahead` or behind, in steps.
+  HWY_INLINE Floats3 hits_of_faces(bool ahead) const {
+    const Floats in_front = hn::Set(kFloats, ahead ? 1.0F : 0.0F);
+    const Floats at_back = hn::Set(kFloats, ahead ? 0.0F : 1.0F);
+    const Floats never = hn::Set(kFloats, ahead ? 1e30F : -1e30F);
     const auto along = [&](Floats cell, Floats start, Floats direction, Floats per_step) HWY_ATTR {
       const auto forward = hn::Gt(direction, hn::Zero(kFloats));
-      const Floats face = hn::Add(cell, hn::IfThenElseZero(forward, hn::Set(kFloats, 1.0F)));
+      const Floats face = hn::Add(cell, hn::IfThenElse(forward, in_front, at_back));
       const Floats steps = hn::Mul(hn::Sub(face, start), per_step);
       // 0·∞: a ray in a face that it is parallel to never meets it.
-      return hn::IfThenElse(hn::Lt(hn::Abs(per_step), hn::Set(kFloats, 1e20F)), steps,
-                            hn::Set(kFloats, 1e30F));
+      return hn::IfThenElse(hn::Lt(hn::Abs(per_step), hn::Set(kFloats, 1e20F)), steps, never);
     };
     return {along(cell_.x, rays_.start.x, rays_.direction.x, per_step_.x),
             along(cell_.y, rays_.start.y, rays_.direction.y, per_step_.y),
@@ -232,15 +260,25 @@ class SurfaceMarch {
                                       hn::Xor(hn::Lt(value, isovalue), hn::Lt(next, isovalue)));
         if (hn::AllFalse(kFloats, hit)) continue;
         const Floats s = cubic.solve(isovalue, ends[part], ends[part + 1], hit);
-        if constexpr (kDvr) integrate(hit, hn::MulAdd(s, length, at_), /*to_the_end=*/true);
+        const Floats where = hn::MulAdd(s, length, at_);
+        const FloatMask own = hn::And(hit, is_own(where));
+        if (hn::AllFalse(kFloats, own)) continue;
+        if constexpr (kDvr) integrate(own, where, /*to_the_end=*/true);
         const Floats3 fraction{hn::MulAdd(s, chord.x, entry.x), hn::MulAdd(s, chord.y, entry.y),
                                hn::MulAdd(s, chord.z, entry.z)};
-        add_surface(hit, fraction, rising, up, down);
-        remember(hit, rising, std::uint32_t(i), std::uint32_t(count));
+        add_surface(own, fraction, rising, up, down);
+        remember(own, rising, std::uint32_t(i), std::uint32_t(count));
       }
       value = next;
     }
     value_ = hn::IfThenElse(lanes, value, value_);
+  }
+
+  /// Whether a place of the ray lies in one of the slab's segments.
+  HWY_INLINE FloatMask is_own(Floats steps) const {
+    const FloatMask after =
+        hn::Or(hn::Eq(rays_.begin, hn::Zero(kFloats)), hn::Ge(steps, rays_.begin));
+    return hn::And(after, hn::Lt(steps, rays_.until));
   }
 
   /// Emission and absorption from where it has come to, in whole segments, and to_the_end in what
@@ -258,7 +296,7 @@ class SurfaceMarch {
   }
 
   HWY_INLINE void add_interval(FloatMask sampled, Floats begin, Floats end) {
-    const Floats3 position = rays_.at(middle(begin, end), scene_.field.upper);
+    const Floats3 position = rays_.at(middle(begin, end), scene_.field);
     const CellPlace place = locate(position);
     Floats value = field_.value(place, sampled);
     const FloatMask finite = FieldType::take_finite(value);

@@ -146,7 +146,8 @@ class Window {
   HWY_INLINE IntPoint origin_at(const Beam& beam, float first, float last) const {
     alignas(16) static constexpr std::int32_t kAligned[4] = {~3, ~3, ~0, 0};
     const auto cell = hn::ConvertTo(kIntPoint, hn::Max(beam.lowest(first, last), hn::Zero(kPoint)));
-    const auto stored = hn::Max(hn::Add(cell, hn::Set(kIntPoint, 1 - kReach)), hn::Zero(kIntPoint));
+    const auto stored = hn::Max(hn::Add(cell, hn::Set(kIntPoint, 1 - kReach)),
+                                hn::Load(kIntPoint, layout_.first_origin));
     return hn::And(hn::Min(stored, hn::Load(kIntPoint, layout_.last_origin)),
                    hn::Load(kIntPoint, kAligned));
   }
@@ -203,7 +204,7 @@ class Window {
   HWY_INLINE void move_to(std::int32_t x, std::int32_t y, std::int32_t z) {
     // Stored coordinates: voxel + 1.
     const auto begin = [&](std::int32_t v, int axis) {
-      return std::clamp(v + 1 - kReach, 0, layout_.last_origin[axis]);
+      return std::clamp(v + 1 - kReach, layout_.first_origin[axis], layout_.last_origin[axis]);
     };
     const std::int32_t x0 = begin(x, 0) & ~3, y0 = begin(y, 1) & ~3, z0 = begin(z, 2);
     origin_ = {hn::Set(kInts, x0 - 1), hn::Set(kInts, y0 - 1), hn::Set(kInts, z0 - 1)};
