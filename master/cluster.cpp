@@ -131,6 +131,7 @@ VolumeInfo Cluster::load_volume(const SceneVolume& volume,
     const Rank rank = topology_.worker(w);
     const int slab = slab_of_worker(w);
     if (read.insert({ranks_[static_cast<std::size_t>(rank.value)].node, slab}).second) {
+      read_[rank.value] = 0;
       post_.to_worker(
           rank, LoadVolume{volume.file.string(), volume.component.value_or(-1),
                            static_cast<std::uint32_t>(slab), static_cast<std::uint32_t>(slabs_)});
@@ -171,8 +172,11 @@ void Cluster::on(Rank from, const VoxelCounts& message) {
   }
 }
 
-void Cluster::on(Rank, LoadProgress message) {
-  if (progress_) progress_(std::clamp(static_cast<double>(message.fraction), 0.0, 1.0));
+void Cluster::on(Rank from, LoadProgress message) {
+  read_[from.value] = std::clamp(static_cast<double>(message.fraction), 0.0, 1.0);
+  double sum = 0;
+  for (const auto& [rank, fraction] : read_) sum += fraction;
+  if (progress_) progress_(sum / static_cast<double>(read_.size()));
 }
 
 void Cluster::on(Rank from, VolumeLoaded message) {

@@ -34,9 +34,9 @@ class Interrupted : public FatalError {
 };
 
 struct ClusterOptions {
-  int threads = 0;           ///< per worker; 0: the cores of its node / the workers on it
-  bool interactive = false;  ///< compute threads give way to everything else
-  std::optional<int> slabs;  ///< parts of the volume, 0: one for each worker; absent: not cut
+  int threads = 0;                ///< per worker; 0: the cores of its node / the workers on it
+  bool interactive = false;       ///< compute threads give way to everything else
+  std::optional<int> slabs = {};  ///< parts of the volume, 0: one for each worker; absent: not cut
   /// Asked while waiting for other ranks; true ends the job with Interrupted.
   std::function<bool()> interrupted = [] { return false; };
 };
@@ -205,7 +205,8 @@ class Cluster {
   std::deque<ClusterEvent> events_;  // not yet handed out, oldest first
 
   std::function<void(double)> progress_;
-  std::size_t mapped_ = 0;  // workers that hold the volume, or their slab
+  std::map<int, double> read_;  // by rank that reads: the fraction that it has read
+  std::size_t mapped_ = 0;      // workers that hold the volume, or their slab
   std::optional<VolumeInfo> volume_;
   int slabs_ = 0;                      // 0: the volume is not cut
   std::map<int, SlabReader> readers_;  // by slab: the first rank that has read it

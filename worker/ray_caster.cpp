@@ -150,25 +150,26 @@ std::string kernel_name(const CommittedScene& scene) {
 std::vector<glm::dvec3> visible_points(const CommittedScene& scene, std::size_t most) {
   const Volume& volume = scene.volume();
   const auto is_visible = scene.visible_cells();
-  const bool any = std::find(is_visible.begin(), is_visible.end(), true) != is_visible.end();
   const glm::ivec3 counts = volume.cell_counts();
   const VolumeGeometry& geometry = volume.info().geometry;
   const LayerRange layers = volume.layers();
-  const glm::dmat4 world_from_index = geometry.world_from_index();
-  std::vector<glm::dvec3> all;
-  for (std::size_t i = 0; i < is_visible.size(); ++i) {
-    if (any && !is_visible[i]) continue;
-    const int cell = static_cast<int>(i);
-    const int layer = layers.first + cell / counts.x / counts.y;
-    if (layer < volume.slab().first_layer || layer >= volume.slab().last_layer) continue;
-    const glm::dvec3 place(cell % counts.x, cell / counts.x % counts.y, layer);
-    const glm::dvec3 last(geometry.size - 1);
-    all.push_back(world_from_index *
-                  glm::dvec4(glm::min(double(kCellEdge) * (place + 0.5), last), 1));
-  }
+  const std::size_t in_layer = static_cast<std::size_t>(counts.x) * counts.y;
+  const std::size_t begin = in_layer * (volume.slab().first_layer - layers.first);
+  const std::size_t end = in_layer * (volume.slab().last_layer - layers.first);
+  const auto seen =
+      std::size_t(std::count(is_visible.begin() + begin, is_visible.begin() + end, true));
+  const std::size_t total = seen > 0 ? seen : end - begin;
+  const std::size_t wanted = std::min(most, total);
   std::vector<glm::dvec3> chosen;
-  const std::size_t count = std::min(most, all.size());
-  for (std::size_t i = 0; i < count; ++i) chosen.push_back(all[i * all.size() / count]);
+  std::size_t passed = 0;
+  for (std::size_t i = begin; i < end && chosen.size() < wanted; ++i) {
+    if (seen > 0 && !is_visible[i]) continue;
+    if (passed++ != chosen.size() * total / wanted) continue;
+    const glm::dvec3 place(i % counts.x, i / counts.x % counts.y, layers.first + i / in_layer);
+    const glm::dvec3 last(geometry.size - 1);
+    chosen.emplace_back(geometry.world_from_index() *
+                        glm::dvec4(glm::min(double(kCellEdge) * (place + 0.5), last), 1));
+  }
   return chosen;
 }
 

@@ -56,19 +56,21 @@ bool WorkerRole::run() {
         heartbeat_.beat(post_);  // also when messages never end
       }
       finish_loading();
+      finish_counting();
       send_done();
       heartbeat_.beat(post_);
     } catch (const std::exception& error) {
       post_.tell_failure(error);
     }
-    if (!stop_) post_.wait(loading_ ? kLoadingWait : kIdleWait);
+    if (!stop_) post_.wait(loading_ || counting_ ? kLoadingWait : kIdleWait);
   }
   post_.flush(kFarewell);
   return !stop_->ranks_lost;
 }
 
 void WorkerRole::on(BeginSession message) {
-  require(message.threads > 0 && message.compositors > 0, "was given a session without ranks");
+  require(message.threads > 0 && message.tiles > 0 && message.compositors > 0,
+          "was given a session without ranks");
   session_ = message;
   const auto wake = [this] { post_.wake(); };
   if (message.slabs > 0) {
@@ -118,7 +120,17 @@ void WorkerRole::on(MapVolume message) {
 
 void WorkerRole::on(const CountVoxels& message) {
   require(volume_ != nullptr, "was asked for voxels before it had any");
-  post_.to_master(VoxelCounts{count_voxels(*volume_, message.minimum, message.maximum)});
+  counting_ = std::async(std::launch::async, [volume = volume_, message] {
+    return count_voxels(*volume, message.minimum, message.maximum);
+  });
+}
+
+void WorkerRole::finish_counting() {
+  if (!counting_ || counting_->wait_for(std::chrono::seconds(0)) != std::future_status::ready)
+    return;
+  auto counts = counting_->get();
+  counting_.reset();
+  post_.to_master(VoxelCounts{std::move(counts)});
 }
 
 void WorkerRole::on(DescribeVolume message) {

@@ -47,6 +47,7 @@ class WorkerRole {
   void require(bool good, const char* what) const;
   void send_done();
   void finish_loading();
+  void finish_counting();
   /// What casts the rays of a view: this worker, or all that hold a slab.
   std::shared_ptr<const SampleSource> source_of(const BeginView& view);
 
@@ -59,6 +60,7 @@ class WorkerRole {
   std::atomic<float> load_fraction_{0};
   float told_fraction_ = 0;
   std::optional<std::future<Result<VolumeBlock>>> loading_;
+  std::optional<std::future<std::vector<std::uint64_t>>> counting_;
   std::shared_ptr<const Volume> volume_;
   std::uint32_t revision_ = 0;
   std::shared_ptr<const CommittedScene> scene_;

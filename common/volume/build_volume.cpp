@@ -311,6 +311,56 @@ void with_voxel_type(VoxelType type, F f) {
   }
 }
 
+// Counts a volume's own voxels where they lie: a row of columns at a time, column by column, so
+// that memory is read in order.
+template <class S>
+class VoxelCounter {
+ public:
+  VoxelCounter(const Volume& volume, Binning bin)
+      : layout_(volume.layout()),
+        voxels_(volume.voxels()),
+        own_(own_slices(volume.slab(), layout_.size.z)),
+        bin_(bin) {}
+
+  void add_to(std::vector<std::uint64_t>& histogram) const {
+    tbb::enumerable_thread_specific<std::vector<std::uint64_t>> parts{
+        std::vector<std::uint64_t>(kBins)};
+    tbb::parallel_for(0, layout_.columns.y, [&](int row) {
+      for (int column = 0; column < layout_.columns.x; ++column)
+        count_column(column * ColumnLayout::kEdge, row * ColumnLayout::kEdge, parts.local());
+    });
+    for (const auto& part : parts)
+      for (std::size_t i = 0; i < kBins; ++i) histogram[i] += part[i];
+  }
+
+ private:
+  // The column that begins at a voxel in stored coordinates; its edge may be apron.
+  void count_column(int x, int y, std::vector<std::uint64_t>& counts) const {
+    constexpr int kApron = ColumnLayout::kApron;
+    const int x_begin = std::max(x, kApron), y_begin = std::max(y, kApron);
+    const int x_end = std::min(x + ColumnLayout::kEdge, layout_.size.x + kApron);
+    const int y_end = std::min(y + ColumnLayout::kEdge, layout_.size.y + kApron);
+    for (int z = own_.first + kApron; z < own_.last + kApron; ++z)
+      for (int j = y_begin; j < y_end; ++j) {
+        const std::byte* first = voxels_ + layout_.offset(x_begin, j, z);
+        for (int i = 0; i < x_end - x_begin; ++i) count(first + i, counts);
+      }
+  }
+
+  void count(const std::byte* first, std::vector<std::uint64_t>& counts) const {
+    std::array<std::byte, sizeof(S)> bytes;
+    for (std::size_t plane = 0; plane < sizeof(S); ++plane)
+      bytes[plane] = first[std::int64_t(plane) * layout_.plane_bytes];
+    const double value = double(std::bit_cast<S>(bytes));
+    if (std::isfinite(value)) ++counts[bin_(value)];
+  }
+
+  const ColumnLayout& layout_;
+  const std::byte* voxels_;
+  LayerRange own_;
+  Binning bin_;
+};
+
 /// Of a file's slices in memory at a time, beside the block that is made from them.
 constexpr std::int64_t kWindowBytes = std::int64_t(1) << 25;
 
@@ -361,24 +411,11 @@ std::optional<Failure> fill_slab(VolumeInfo& info, const Slab& slab, const Slice
 }
 
 std::vector<std::uint64_t> count_voxels(const Volume& volume, double minimum, double maximum) {
-  const glm::ivec3 size = volume.info().geometry.size;
-  const LayerRange own = own_slices(volume.slab(), size.z);
-  const Binning bin(minimum, maximum);
-  tbb::enumerable_thread_specific<std::vector<std::uint64_t>> parts{
-      std::vector<std::uint64_t>(kBins)};
-  tbb::parallel_for(tbb::blocked_range<int>(own.first, own.last),
-                    [&](const tbb::blocked_range<int>& range) {
-                      auto& part = parts.local();
-                      for (int z = range.begin(); z < range.end(); ++z)
-                        for (int y = 0; y < size.y; ++y)
-                          for (int x = 0; x < size.x; ++x) {
-                            const double value = volume.at(x, y, z);
-                            if (std::isfinite(value)) ++part[bin(value)];
-                          }
-                    });
   std::vector<std::uint64_t> histogram(kBins);
-  for (const auto& part : parts)
-    for (std::size_t i = 0; i < kBins; ++i) histogram[i] += part[i];
+  with_voxel_type(volume.info().type, [&]<class T>(T) {
+    const Binning bin(minimum - volume.value_bias(), maximum - volume.value_bias());
+    VoxelCounter<Stored<T>>(volume, bin).add_to(histogram);
+  });
   return histogram;
 }
 
