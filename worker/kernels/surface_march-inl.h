@@ -264,10 +264,12 @@ class SurfaceMarch {
         const FloatMask own = hn::And(hit, is_own(where));
         if (hn::AllFalse(kFloats, own)) continue;
         if constexpr (kDvr) integrate(own, where, /*to_the_end=*/true);
+        // What lies before it may have been the last that a ray can see.
+        const FloatMask seen = hn::And(own, sum_.is_open());
         const Floats3 fraction{hn::MulAdd(s, chord.x, entry.x), hn::MulAdd(s, chord.y, entry.y),
                                hn::MulAdd(s, chord.z, entry.z)};
-        add_surface(own, fraction, rising, up, down);
-        remember(own, rising, std::uint32_t(i), std::uint32_t(count));
+        add_surface(seen, fraction, rising, up, down);
+        remember(seen, rising, std::uint32_t(i), std::uint32_t(count));
       }
       value = next;
     }

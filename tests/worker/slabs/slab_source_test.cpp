@@ -7,8 +7,11 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <cstdio>
 #include <cstring>
+#include <random>
+#include <tuple>
 
 #include "common/scene/resolve.h"
 #include "random_scene.h"
@@ -70,6 +73,52 @@ TEST(SlabSource, RandomScenesAreEqualToTheBitOnEveryInstructionSet) {
     EXPECT_GT(seen, rays / 10);
   }
   force_instruction_set("");
+}
+
+/// Ripples in an oblique grid of 5 layers of cells.
+std::shared_ptr<const Volume> oblique_bumps() {
+  VolumeGeometry geometry{.size = {24, 20, 37}, .origin_mm = {-12, -9, -16}};
+  geometry.direction = glm::dmat3(glm::dvec3(1, 0.1, 0), glm::dvec3(-0.1, 1, 0.2),
+                                  glm::dvec3(0, -0.2, 0.9));
+  return make_volume(geometry, VoxelType::kUInt8, [](int x, int y, int z) {
+    const double distance = std::hypot(x - 11, y - 9.5, (z - 18) / 2.0);
+    return std::clamp(255 - 22 * distance + 40 * std::sin(1.3 * x) * std::cos(y + z), 0.0, 255.0);
+  });
+}
+
+Scene scene_of_bumps(const VolumeInfo& info, Mode mode, bool with_surfaces, bool lit) {
+  Scene scene = ramp_scene(info);
+  SceneVolume& volume = scene.volumes.front();
+  volume.mode = mode;
+  if (with_surfaces)
+    volume.isosurfaces = {{90, {0.9, 0.7, 0.5}, 0.5}, {180, {0.4, 0.6, 0.9}, 1}};
+  if (lit) volume.shading = Shading{};
+  scene.image.size = {157, 123};
+  return scene;
+}
+
+TEST(SlabSource, AFineLookAlongAcrossAndFromInsideIsEqualToTheBit) {
+  const auto volume = oblique_bumps();
+  std::mt19937 random(3);
+  std::uniform_real_distribution<float> share(0, 1);
+  std::vector<PixelPosition> rays(40000);
+  for (PixelPosition& ray : rays) ray = {157 * share(random), 123 * share(random)};
+  const glm::dvec3 places[] = {{3, 5, 90}, {45, -65, 20}, {2, -4, 1}};
+  for (const auto& [mode, with_surfaces, lit] :
+       {std::tuple{Mode::kDvr, false, true}, std::tuple{Mode::kDvr, true, true},
+        std::tuple{Mode::kIsosurface, true, false}, std::tuple{Mode::kMip, false, false}}) {
+    Scene scene = scene_of_bumps(volume->info(), mode, with_surfaces, lit);
+    for (const glm::dvec3& place : places) {
+      scene.camera = Camera{.position = place, .target = {0, 0, 0}, .up = {0, 1, 0}, .fovy_deg = 30};
+      const auto expected = look(
+          *make_ray_caster(commit_scene(scene, volume), *scene.camera, scene.image.size), rays);
+      for (const int slabs : {2, 5}) {
+        const auto found = look(*slab_source_of(scene, cut(*volume, slabs)), rays);
+        EXPECT_EQ(differing(expected, found), 0U)
+            << int(mode) << " from " << place.z << ", " << slabs << " slabs";
+      }
+    }
+  }
 }
 
 }  // namespace
