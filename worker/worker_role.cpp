@@ -9,6 +9,7 @@
 #include "common/protocol/topology.h"
 #include "common/scene/scene_file.h"
 #include "common/tile/update_pattern.h"
+#include "common/transport/counters.h"
 #include "common/transport/shared_memory.h"
 #include "common/volume/build_volume.h"
 #include "common/volume/volume_io.h"
@@ -147,8 +148,10 @@ void WorkerRole::send_done() {
   }
 }
 
-void WorkerRole::on(const ReportCounters&) {
-  post_.to_master(Counters{post_.sent(), pool_ ? pool_->busy().count() : 0});
+void WorkerRole::on(const ReportCounters& message) {
+  const auto now = BusyLog::Clock::now();
+  post_.to_master(
+      counters_of(post_, message, pool_ ? pool_->busy_log(now) : BusyLog(), session_.threads, now));
 }
 
 void WorkerRole::on(const Stop& message) { stop_ = message; }

@@ -73,7 +73,7 @@ TEST(ComputePool, CastsQuantaInOrderAndReportsThem) {
     EXPECT_EQ(done[i].report.samples, 10 * kWhole.rays);
   }
   EXPECT_GE(kWhole.rays, 4096u);
-  EXPECT_GT(pool.pool.busy().count(), 0);
+  EXPECT_GT(pool.pool.busy_log(BusyLog::Clock::now()).total().count(), 0);
 }
 
 TEST(ComputePool, GoesOnWithTheTilesOfTheViewAndForgetsThoseOfOlderOnes) {
