@@ -121,6 +121,26 @@ TEST(ComputePool, TellsThatAViewHasBegunBeforeItsFirstTileIsDone) {
   EXPECT_EQ(pool.take(1).size(), 1u);
 }
 
+TEST(ComputePool, AQuantumThatRunsCountsAsBusyUntilNow) {
+  NotifyingPool pool(2);
+  const auto held = std::make_shared<HeldSource>();
+  pool.pool.begin_view(view(1, held));
+  pool.pool.push(tile(1, 0));
+  held->wait_until_entered(1);
+  const auto now = BusyLog::Clock::now();
+  const auto total = [&](BusyLog::Clock::time_point time) {
+    return pool.pool.busy_log(time).total().count();
+  };
+  EXPECT_GT(total(now), 0);
+  EXPECT_NEAR(total(now + std::chrono::seconds(3)), total(now) + 3, 1e-6) << "one thread, not two";
+  held->allow(kWhole.batches);
+  pool.take(1);
+  while (total(now + std::chrono::seconds(6)) > total(now + std::chrono::seconds(5)) + 0.5) {
+    std::this_thread::yield();  // the thread puts its tools away
+  }
+  EXPECT_LT(total(now + std::chrono::seconds(3)), 3);
+}
+
 TEST(ComputePool, IgnoresQuantaWithoutOrOfAnotherView) {
   NotifyingPool pool(1);
   pool.pool.push(tile(1, 0));
