@@ -90,11 +90,11 @@ function panel(): HTMLElement {
 }
 
 /** Opens the load panel where it can be seen, or closes it. */
-function openLoad(): void {
-  const shows = load.open && !document.body.classList.contains('folded');
-  if (document.body.classList.contains('folded')) fold.click();
-  load.open = !shows;
-  if (load.open) load.scrollIntoView({ block: 'start' });
+function toggleLoad(): void {
+  const folded = document.body.classList.contains('folded');
+  if (folded) fold.click();
+  load.open = folded || !load.open;
+  if (load.open) load.scrollIntoView();
 }
 
 const side = panel();
@@ -119,7 +119,7 @@ installShortcuts(session, {
   fold: () => fold.click(),
   screenshot: () => saveScreenshot(session, canvas),
   overlay: (mode) => tiles.toggle(mode),
-  load: () => openLoad(),
+  load: toggleLoad,
 });
 installDebugHandle(session, connection, view, canvas);
 

@@ -13,9 +13,7 @@ const kThinnest = 3;
 
 interface Bar { row: HTMLElement; name: HTMLElement; fill: HTMLElement; value: HTMLElement }
 
-function nameOf(rank: RankLoad): string {
-  return isWorker(rank) ? String(rank.rank) : rank.role === 'compositor' ? `${rank.rank} comp.` : `${rank.rank} ${rank.role}`;
-}
+const nameOf = (rank: RankLoad): string => (isWorker(rank) ? String(rank.rank) : `${rank.rank} ${rank.role}`);
 
 const valueOf = (rank: RankLoad, span: Span): string => {
   const work = workOf(rank, span);
@@ -53,7 +51,7 @@ export function barGraph(): BarGraph {
       row.classList.toggle('lost', rank.lost);
       row.title = `Rank ${rank.rank}, ${rank.role}: ${valueOf(rank, span)}`;
       name.textContent = nameOf(rank);
-      name.style.setProperty('--chip', isWorker(rank) ? color(rank.rank) : 'transparent');
+      name.style.setProperty('--chip', isWorker(rank) ? color(rank.rank) : 'var(--other)');
       fill.style.width = rank.lost ? '0' : `${(100 * (workOf(rank, span) ?? 0)) / highest}%`;
       value.textContent = valueOf(rank, span);
     });
@@ -74,10 +72,8 @@ export function barGraph(): BarGraph {
       list.style.setProperty('--bar', thin ? `${Math.max(kThinnest, Math.floor(kHeight / ranks.length) - 1)}px` : '10px');
       showBars(ranks, span, color);
       const uneven = imbalance(all, span);
-      const workers = all.filter(isWorker).length;
       figure.textContent = uneven ? `${(100 * uneven.excess).toFixed(0)} %` : '–';
-      detail.textContent = uneven ? ` imbalance of ${workers} ${workers === 1 ? 'worker' : 'workers'}, rank ${uneven.busiest} the busiest`
-        : ' imbalance: no worker has work';
+      detail.textContent = uneven ? ` imbalance · rank ${uneven.busiest} is the busiest` : ' imbalance · no worker has work';
     },
   };
 }

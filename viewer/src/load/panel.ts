@@ -13,10 +13,11 @@ import { trafficTable } from './traffic';
 
 export function loadPanel(session: Session, tiles: TileOverlay): HTMLDetailsElement {
   let span: Span = 'second';
+  let opened = false;
   const bars = barGraph();
   const lanes = timeline();
   const traffic = trafficTable();
-  const overlay = segmented<OverlayMode>('Over the picture', [['none', 'Picture', 'The picture alone'],
+  const overlay = segmented<OverlayMode>('Over the picture', [['none', 'Nothing', 'The picture alone'],
     ['owners', 'Owners', 'Which worker cast each tile (o)'], ['cost', 'Cost', 'What each tile took (t)']], (mode) => tiles.choose(mode));
   const spans = segmented<Span>('Work of', [['second', 'Last second', 'Busy time of the last second'],
     ['view', 'Newest view', 'Time spent on the newest view of which all tiles are cast']], (chosen) => { span = chosen; update(); });
@@ -26,6 +27,8 @@ export function loadPanel(session: Session, tiles: TileOverlay): HTMLDetailsElem
     bars.show(load.ranks, span, (rank) => tiles.colorOf(rank));
     lanes.show(load);
     traffic.show(load.bytes);
+    if (opened) element.scrollIntoView({ block: 'start' });
+    opened = false;
   };
   overlay.show(tiles.mode);
   spans.show(span);
@@ -36,5 +39,7 @@ export function loadPanel(session: Session, tiles: TileOverlay): HTMLDetailsElem
     bars.element, lanes.element, el('h3', {}, 'Bytes by kind of message'), traffic.element);
   // Closed, folded and scrolled away: all of them are out of view.
   new IntersectionObserver((entries) => session.watch({ load: entries.at(-1)!.isIntersecting })).observe(content);
-  return section('Load', false, content);
+  const element = section('Load', false, content);
+  element.addEventListener('toggle', () => { opened = element.open; });
+  return element;
 }

@@ -11,7 +11,7 @@ import type { Tile, Tiles } from './messages';
 
 export type OverlayMode = 'none' | 'owners' | 'cost';
 
-const kFill = 0.42;
+const kFill = 0.36;
 const kMostChips = 12;
 const kNumberedTile = 24;
 

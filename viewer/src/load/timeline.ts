@@ -8,9 +8,10 @@ import type { Load, RankLoad } from './messages';
 
 const kGutter = 26;
 const kTallest = 18;
-const kThinnest = 3;
+const kThinnest = 2;
 const kHeight = 200;
 const kGap = 1;
+/** Lanes this high or higher have their rank's number and a gap between them. */
 const kWordedLane = 9;
 export const kSeconds = 6;
 
@@ -41,8 +42,11 @@ export function timeline(): { element: HTMLElement; show: (load: Load) => void }
 }
 
 function draw(canvas: HTMLCanvasElement, width: number, { ranks, bin }: Load): void {
-  const lane = Math.max(kThinnest, Math.min(kTallest, Math.floor(kHeight / Math.max(ranks.length, 1)) - kGap));
-  const height = ranks.length * (lane + kGap) + kGap;
+  const room = Math.floor(kHeight / Math.max(ranks.length, 1)) - kGap;
+  const tall = room >= kWordedLane;
+  const lane = tall ? Math.min(kTallest, room) : Math.max(kThinnest, room);
+  const gap = tall ? kGap : 0;
+  const height = ranks.length * (lane + gap) + gap;
   const ratio = window.devicePixelRatio || 1;
   const [pixelWidth, pixelHeight] = [Math.max(1, Math.round(width * ratio)), Math.max(1, Math.round(height * ratio))];
   if (canvas.width !== pixelWidth || canvas.height !== pixelHeight) [canvas.width, canvas.height] = [pixelWidth, pixelHeight];
@@ -57,10 +61,10 @@ function draw(canvas: HTMLCanvasElement, width: number, { ranks, bin }: Load): v
   context.font = '10px system-ui, sans-serif';
   context.textBaseline = 'middle';
   context.textAlign = 'right';
-  const x = (part: number): number => kGutter + Math.max(part, 0) * (width - kGutter);
+  const x = (part: number): number => Math.round((kGutter + Math.max(part, 0) * (width - kGutter)) * ratio) / ratio;
   ranks.forEach((rank, i) => {
-    const top = kGap + i * (lane + kGap);
-    if (lane >= kWordedLane) {
+    const top = gap + i * (lane + gap);
+    if (tall) {
       context.fillStyle = rank.lost ? bad : text;
       context.fillText(String(rank.rank), kGutter - 6, top + lane / 2 + 0.5);
     }
@@ -70,12 +74,12 @@ function draw(canvas: HTMLCanvasElement, width: number, { ranks, bin }: Load): v
     rank.share.forEach((share, j) => {
       const [from, to] = binPlace({ bin }, rank, j);
       if (share <= 0 || to <= 0 || rank.lost) return;
-      const tall = lane >= kWordedLane ? Math.max(share * lane, 1) : lane;
-      context.globalAlpha = lane >= kWordedLane ? 1 : 0.25 + 0.75 * share;
-      context.fillRect(x(from), top + lane - tall, x(to) - x(from), tall);
+      const filled = tall ? Math.max(share * lane, 1) : lane;
+      context.globalAlpha = tall ? 1 : 0.2 + 0.8 * share;
+      context.fillRect(x(from), top + lane - filled, x(to) - x(from), filled);
     });
     context.globalAlpha = 1;
   });
   context.fillStyle = rule;
-  for (let second = 1; second < kSeconds; ++second) context.fillRect(Math.round(x(second / kSeconds)), 0, 1, height);
+  for (let second = 1; second < kSeconds; ++second) context.fillRect(x(second / kSeconds), 0, 1, height);
 }
