@@ -83,17 +83,15 @@ void ComputePool::work(std::size_t thread, const std::stop_token& stop) {
     const bool first = last_begun_ != quantum.epoch;
     last_begun_ = quantum.epoch;
     if (first) begun_ = quantum.epoch;
-    const auto begin = BusyLog::Clock::now();
-    running_[thread] = begin;
+    running_[thread] = BusyLog::Clock::now();
     lock.unlock();
     if (first) notify_();
     try {
-      cast(*view, quantum, std::move(tile), stop);
+      cast(*view, quantum, std::move(tile), thread, stop);
     } catch (...) {
       note_failure();
     }
     lock.lock();
-    busy_.add(begin, BusyLog::Clock::now());
     running_[thread].reset();
   }
 }
@@ -107,17 +105,19 @@ void ComputePool::note_failure() {
 }
 
 void ComputePool::cast(const CastView& view, const RenderTile& quantum,
-                       std::unique_ptr<TileRefinement> tile, const std::stop_token& stop) {
-  const auto begin = std::chrono::steady_clock::now();
+                       std::unique_ptr<TileRefinement> tile, std::size_t thread,
+                       const std::stop_token& stop) {
+  const auto begin = *running_[thread];  // none but this thread sets it
   auto result = refine_tile(view, quantum, std::move(tile), [&] {
     return epoch_.load(std::memory_order_relaxed) != quantum.epoch.value || stop.stop_requested();
   });
-  const auto cost = std::chrono::steady_clock::now() - begin;
-  if (!result) return;
-  const auto cost_us = std::chrono::duration_cast<std::chrono::microseconds>(cost).count();
+  const auto end = BusyLog::Clock::now();
+  const auto cost_us = std::chrono::duration_cast<std::chrono::microseconds>(end - begin).count();
   {
     const std::lock_guard lock(mutex_);
-    if (quantum.epoch != view_->epoch) return;
+    busy_.add(begin, end);
+    running_[thread].reset();
+    if (!result || quantum.epoch != view_->epoch) return;
     if (result->tile) tiles_.put(quantum.tile, std::move(result->tile));
     outbox_.push_back(
         {std::move(result->samples),

@@ -51,7 +51,7 @@ class ComputePool {
   void work(std::size_t thread, const std::stop_token& stop);
   void note_failure();
   void cast(const CastView& view, const RenderTile& quantum, std::unique_ptr<TileRefinement> tile,
-            const std::stop_token& stop);
+            std::size_t thread, const std::stop_token& stop);
 
   std::function<void()> notify_;
   mutable std::mutex mutex_;

@@ -32,7 +32,7 @@ class BusyLog {
   std::chrono::duration<double> total() const { return total_; }
 
   /// The kBins whole bins before `now`, oldest first: what part of the time of `threads` threads
-  /// was computed, 0 … 255. `now` must not be before the end of an interval that was added.
+  /// was computed, 0 … 255.
   std::vector<std::uint8_t> shares(Clock::time_point now, unsigned threads) {
     const std::int64_t end = number_of(now);
     advance(end);
@@ -40,7 +40,9 @@ class BusyLog {
     shares.reserve(kBins);
     const double full = std::chrono::duration<double>(kBin).count() * std::max(1U, threads);
     for (std::int64_t n = end - kBins; n < end; ++n) {
-      const double share = std::chrono::duration<double>(at(n)).count() / full;
+      // Intervals that ended after `now` may have pushed the oldest bins out.
+      const Clock::duration busy = n < newest_ - kBins ? Clock::duration(0) : at(n);
+      const double share = std::chrono::duration<double>(busy).count() / full;
       shares.push_back(static_cast<std::uint8_t>(255 * std::min(share, 1.0) + 0.5));
     }
     return shares;

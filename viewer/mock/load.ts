@@ -7,10 +7,13 @@ const kBins = 128;
 const kBinMs = 50;
 const kWorkers = Number(process.env.MOCK_WORKERS ?? 4);
 const kFirstWorker = 2;
+/** As the mock's status says. */
+const kLost = 4;
 const kTile = 64;
 
 /** How busy a rank is in a bin of time, 0 … 1: the same whenever it is asked for. */
 function shareOf(rank: number, bin: number, moving: boolean): number {
+  if (rank === kLost) return 0;
   if (rank === 0) return 0.04 + 0.03 * Math.abs(Math.sin(bin * 1.7));
   if (rank === 1) return 0.2 + 0.15 * Math.abs(Math.sin(bin * 0.9));
   const pause = !moving && bin % 40 < 6 ? 0 : 1;
@@ -24,7 +27,7 @@ export function loadOf(now: number, moving: boolean): object {
     const busy = shares.slice(-20).reduce((sum, share) => sum + share, 0) / 20;
     const role = rank === 0 ? 'master' : rank < kFirstWorker ? 'compositor' : 'worker';
     return {
-      rank, role, lost: false, busy, ...(role === 'worker' ? { view: 0.04 * busy } : {}),
+      rank, role, lost: rank === kLost, busy, ...(role === 'worker' ? { view: 0.04 * busy } : {}),
       share: shares.map((share) => kDigits[Math.round(share * 63)]).join(''),
       age: now - newest * kBinMs, error: rank === 0 ? 0 : 0.2,
     };

@@ -60,6 +60,13 @@ TEST(BusyLog, ALongIntervalFillsEveryBin) {
   EXPECT_DOUBLE_EQ(log.total().count(), 99);
 }
 
+TEST(BusyLog, WhatCameAfterTheTimeThatIsAskedForShowsNowhere) {
+  BusyLog log;
+  log.add(at(10'000), at(10'050));
+  log.add(at(10'100), at(10'250));
+  EXPECT_EQ(log.shares(at(10'100), 1), nothing_but({{1, 255}}));
+}
+
 TEST(BusyLog, EmptyAndBackwardIntervalsAreNothing) {
   BusyLog log;
   log.add(at(10'000), at(10'000));
