@@ -63,7 +63,7 @@ std::vector<std::uint8_t> cost_rgb8(const ViewState& view) {
 std::string cost_scale(const ViewState& view) {
   const ImageSize tile{std::min(view.grid.tile.width, view.grid.image.width),
                        std::min(view.grid.tile.height, view.grid.image.height)};
-  return fmt::format("0 to {:.3g} ms per {}×{} pixels",
+  return fmt::format("0 to {:.3g} ms per {}x{} pixels",
                      1e3 * dearest(view) * tile.width * tile.height, tile.width, tile.height);
 }
 

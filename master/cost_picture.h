@@ -19,7 +19,7 @@ std::vector<float> cost_per_pixel(const ViewState& view);
 /// edges of tiles darkened.
 std::vector<std::uint8_t> cost_rgb8(const ViewState& view);
 
-/// What the brightest colour stands for: "0 to 1.25 ms per 64×64 pixels".
+/// What the brightest colour stands for: "0 to 1.25 ms per 64x64 pixels".
 std::string cost_scale(const ViewState& view);
 
 }  // namespace goldthread

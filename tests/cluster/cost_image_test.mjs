@@ -41,7 +41,7 @@ test('Its colours are the tiles of the report, by time per pixel', async () => {
   assert.ok(luminance(colors[order[0]]) >= luminance(kDarkest));
   // What the brightest stands for is told in the file and on stderr.
   const scale = cost.texts['goldthread:costScale'];
-  const told = Number(/^0 to (\S+) ms per 32×32 pixels$/.exec(scale)?.[1]);
+  const told = Number(/^0 to (\S+) ms per 32x32 pixels$/.exec(scale)?.[1]);
   const expected = 1e3 * 32 * 32 * density(tiles[order.at(-1)]);
   assert.ok(Math.abs(told / expected - 1) < 0.01, `${scale}, of the tiles ${expected}`);
   assert.ok(made.stderr.includes(scale), made.stderr);

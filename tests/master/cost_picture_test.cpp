@@ -50,11 +50,11 @@ TEST(CostPicture, ColoursGoFromNothingToTheDearestPixelAndEdgesAreDark) {
 }
 
 TEST(CostPicture, TheScaleIsTheDearestOfAWholeTilesPixels) {
-  EXPECT_EQ(cost_scale(view()), "0 to 56.9 ms per 64×64 pixels");  // 3 ms · 64 · 64 / (36 · 6)
+  EXPECT_EQ(cost_scale(view()), "0 to 56.9 ms per 64x64 pixels");  // 3 ms · 64 · 64 / (36 · 6)
   ViewState rows;
   rows.grid = TileGrid::rows_of({100, 32});
   rows.tiles = {{{2}, 1e-3, {}}, {{2}, 2.5e-3, {}}};
-  EXPECT_EQ(cost_scale(rows), "0 to 2.5 ms per 100×16 pixels");
+  EXPECT_EQ(cost_scale(rows), "0 to 2.5 ms per 100x16 pixels");
 }
 
 TEST(CostPicture, AViewThatTookNoTimeHasAPictureToo) {
@@ -62,7 +62,7 @@ TEST(CostPicture, AViewThatTookNoTimeHasAPictureToo) {
   for (auto& tile : idle.tiles) tile.seconds = 0;
   const auto rgb = cost_rgb8(idle);
   EXPECT_EQ(rgb[0], viridis(0)[0]);
-  EXPECT_EQ(cost_scale(idle), "0 to 0 ms per 64×64 pixels");
+  EXPECT_EQ(cost_scale(idle), "0 to 0 ms per 64x64 pixels");
 }
 
 /// CIE 1976 lightness of 8-bit sRGB, from its definition.

@@ -51,7 +51,7 @@ export function barGraph(): BarGraph {
       row.classList.toggle('lost', rank.lost);
       row.title = `Rank ${rank.rank}, ${rank.role}: ${valueOf(rank, span)}`;
       name.textContent = nameOf(rank);
-      name.style.setProperty('--chip', isWorker(rank) ? color(rank.rank) : 'var(--other)');
+      name.style.setProperty('--chip', isWorker(rank) ? color(rank.rank) : 'transparent');
       fill.style.width = rank.lost ? '0' : `${(100 * (workOf(rank, span) ?? 0)) / highest}%`;
       value.textContent = valueOf(rank, span);
     });
