@@ -75,10 +75,10 @@ test('The panel shows each rank\'s work, when it worked, and the bytes', async (
 });
 
 test('A view that has been cast is told of in all', async () => {
-  await page.page.getByText('Newest view').click();
+  await page.page.locator('label:has(input[value="view"])').click();
   await page.page.locator('.load-bar .value').filter({ hasText: /(µs|ms|s)$/ }).first().waitFor();
   assert.equal(await count('.load-bar'), kWorkers.length, 'the others cast nothing');
-  await page.page.getByText('Last second').click();
+  await page.page.locator('label:has(input[value="second"])').click();
 });
 
 test('Tiles lie over the picture and cover it once', async () => {

@@ -303,10 +303,13 @@ export class Session {
       case 'status':
         this.status = message;
         return this.changed.emit('status');
+      // What was on its way when the page stopped to watch is dropped.
       case 'load':
+        if (!this.watched_.load) return;
         this.load = message.load;
         return this.changed.emit('load');
       case 'tiles':
+        if (!this.watched_.tiles) return;
         this.tiles = message.tiles;
         return this.changed.emit('tiles');
       case 'failed':
