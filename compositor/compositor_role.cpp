@@ -9,6 +9,7 @@
 #include "common/image/display.h"
 #include "common/protocol/topology.h"
 #include "common/tile/filter.h"
+#include "common/transport/counters.h"
 #include "common/transport/shared_memory.h"
 #include "compositor/encode.h"
 #include "compositor/output_window.h"
@@ -32,7 +33,7 @@ bool CompositorRole::run() {
       while (auto message = post_.receive<ToCompositor>()) {
         const auto begin = std::chrono::steady_clock::now();
         std::visit([&](auto& value) { on(std::move(value)); }, message->second);
-        busy_ += std::chrono::steady_clock::now() - begin;
+        busy_.add(begin, std::chrono::steady_clock::now());
         heartbeat_.beat(post_);  // also when messages never end
       }
       forward_input();
@@ -178,9 +179,8 @@ void CompositorRole::on(Reply message) {
   if (gateway_) gateway_->send(message.viewer, std::move(message.json));
 }
 
-void CompositorRole::on(const ReportCounters&) {
-  post_.to_master(
-      Counters{post_.sent(), std::chrono::duration<double>(busy_).count(), peak_memory_bytes()});
+void CompositorRole::on(const ReportCounters& message) {
+  post_.to_master(counters_of(post_, message, busy_, 1, BusyLog::Clock::now()));
 }
 
 void CompositorRole::on(const Stop& message) { stop_ = message; }
@@ -199,7 +199,9 @@ void CompositorRole::forward_input() {
     void operator()(DisplayInput& e) const {
       post.to_master(ViewerDisplay{e.viewer, e.serial, e.display});
     }
-    void operator()(AudienceChange& e) const { post.to_master(Audience{e.viewers, e.ready}); }
+    void operator()(AudienceChange& e) const {
+      post.to_master(Audience{e.viewers, e.ready, e.watch.load, e.watch.tiles});
+    }
   };
   for (GatewayEvent& event : gateway_->take_events()) std::visit(Forward{post_}, event);
 }

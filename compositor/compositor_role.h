@@ -8,6 +8,7 @@
 #include <optional>
 #include <vector>
 
+#include "common/base/busy_log.h"
 #include "common/transport/heartbeat.h"
 #include "common/transport/post.h"
 #include "compositor/aged_band.h"
@@ -60,7 +61,7 @@ class CompositorRole {
   /// epoch, the newest: it shows that the master has given up the views before.
   std::vector<Samples> early_;
   PictureAssembly assembly_;
-  std::chrono::steady_clock::duration busy_{0};
+  BusyLog busy_;
   std::unique_ptr<Gateway> gateway_;
 };
 

@@ -7,6 +7,7 @@
 
 #include "common/base/memory.h"
 #include "common/scene/scene_file.h"
+#include "common/transport/counters.h"
 #include "common/transport/heartbeat.h"
 #include "common/transport/shared_memory.h"
 
@@ -30,6 +31,7 @@ Cluster::Cluster(Transport& transport, Topology topology, ClusterOptions options
       topology_(topology),
       options_(std::move(options)),
       ranks_(static_cast<std::size_t>(topology.size())),
+      clocks_(static_cast<std::size_t>(topology.size())),
       scheduler_({}),
       bands_(static_cast<std::size_t>(topology.compositors)) {
   ranks_[0].role = Role::kMaster;
@@ -214,6 +216,7 @@ void Cluster::on(Rank from, SceneCommitted message) {
 void Cluster::begin_view(const Scene& scene, const ViewRequest& request) {
   costs_.fit(request.grid);
   scheduler_.begin_view(request.grid, costs_);
+  if (view_.cast() > kNoStep) whole_view_ = std::move(view_);
   view_ = {};
   // What was told of the old view and not yet heard would be taken for the new one's.
   std::erase_if(events_, [](const ClusterEvent& event) {
@@ -223,6 +226,7 @@ void Cluster::begin_view(const Scene& scene, const ViewRequest& request) {
   view_.epoch = epoch_;
   view_.grid = request.grid;
   view_.tiles.resize(request.grid.count());
+  view_.worker_seconds.resize(static_cast<std::size_t>(topology_.workers));
   std::fill(bands_.begin(), bands_.end(), kNoStep);
   view_.begin = Clock::now();
   const BeginView message{view_.epoch,
@@ -277,6 +281,7 @@ void Cluster::on(Rank from, TileDone message) {
   ViewState::Tile& tile = view_.tiles[message.tile.value];
   tile.worker = from;
   tile.seconds += 1e-6 * message.cost_us;
+  view_.worker_seconds[static_cast<std::size_t>(worker)] += 1e-6 * message.cost_us;
   tile.quality = message.quality;
   ranks_[static_cast<std::size_t>(from.value)].tiles += 1;
   if (scheduler_.finished()) finish_step();
@@ -322,7 +327,7 @@ bool Cluster::handle_one() {
   const auto begin = Clock::now();
   liveness_.heard(message->first, begin);
   handle(message->first, std::move(message->second));
-  ranks_[0].busy_seconds += std::chrono::duration<double>(Clock::now() - begin).count();
+  busy_.add(begin, Clock::now());
   return true;
 }
 
@@ -370,15 +375,15 @@ std::optional<ClusterEvent> Cluster::poll(std::chrono::microseconds at_most) {
   return event;
 }
 
-void Cluster::request_counters() {
+void Cluster::request_counters(bool activity) {
   for (RankState& state : ranks_) state.counted = false;
-  ranks_[0].counted = true;
-  ranks_[0].sent = post_.sent();
-  ranks_[0].peak_memory_bytes = peak_memory_bytes();
-  for (int c = 0; c < topology_.compositors; ++c) {
-    post_.to_compositor(topology_.compositor(c), ReportCounters{});
-  }
-  send_to_workers(ReportCounters{});
+  const auto now = Clock::now();
+  const ReportCounters request{activity, microseconds_of(now)};
+  if (activity) activity_asked_us_ = request.asked_us;
+  on(Rank{0}, counters_of(post_, request, busy_, 1, now));
+  for (int c = 0; c < topology_.compositors; ++c)
+    post_.to_compositor(topology_.compositor(c), request);
+  send_to_workers(request);
 }
 
 void Cluster::on(Rank from, Counters message) {
@@ -387,6 +392,16 @@ void Cluster::on(Rank from, Counters message) {
   state.sent = std::move(message.sent);
   state.busy_seconds = message.busy_seconds;
   state.peak_memory_bytes = message.peak_memory_bytes;
+  if (!message.activity) return;
+  RankClock& clock = clocks_[static_cast<std::size_t>(from.value)];
+  if (auto activity = clock.place(*message.activity, Clock::now()))
+    state.activity = std::move(*activity);
+}
+
+bool Cluster::activity_complete() const {
+  return std::all_of(ranks_.begin(), ranks_.end(), [&](const RankState& rank) {
+    return rank.lost || rank.activity.asked_us == activity_asked_us_;
+  });
 }
 
 bool Cluster::counters_complete() const {

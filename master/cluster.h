@@ -14,6 +14,7 @@
 #include <variant>
 #include <vector>
 
+#include "common/base/busy_log.h"
 #include "common/base/result.h"
 #include "common/protocol/topology.h"
 #include "common/scene/scene.h"
@@ -21,6 +22,7 @@
 #include "common/volume/slab_statistics.h"
 #include "master/cost_history.h"
 #include "master/liveness.h"
+#include "master/rank_clock.h"
 #include "master/scheduler.h"
 
 namespace goldthread {
@@ -53,6 +55,7 @@ struct RankState {
   std::uint64_t peak_memory_bytes = 0;
   bool counted = false;            ///< has answered the last request_counters()
   std::vector<MessageCount> sent;  ///< as of that answer
+  RankActivity activity;           ///< of the last answer that told it
 };
 
 /// What a picture was worth after a step: sums over its pixels, as TileQuality.
@@ -80,6 +83,7 @@ struct ViewState {
     TileQuality quality;
   };
   std::vector<Tile> tiles;
+  std::vector<double> worker_seconds;  ///< thread time that each worker has spent on its tiles
 
   Step cast() const { return {static_cast<std::uint16_t>(steps.size())}; }
   double pixels() const { return double(grid.image.width) * grid.image.height; }
@@ -140,11 +144,17 @@ class Cluster {
   /// job.
   std::optional<ClusterEvent> poll(std::chrono::microseconds at_most);
 
-  /// Asks every rank what it has sent and how long it computed; poll() takes the answers in.
-  void request_counters();
+  /// Asks every rank what it has sent and how long it computed, and with `activity` when it did;
+  /// poll() takes the answers in.
+  void request_counters(bool activity = false);
   bool counters_complete() const;
+  /// Whether the last request with `activity` was answered by all.
+  bool activity_complete() const;
 
   const ViewState& view() const { return view_; }
+  /// The newest view of which all tiles have taken a step: this one or one before; without tiles
+  /// if there is none.
+  const ViewState& whole_view() const { return view_.cast() > kNoStep ? view_ : whole_view_; }
   const Topology& topology() const { return topology_; }
   const std::vector<RankState>& ranks() const { return ranks_; }
   const std::vector<std::string>& features() const { return features_; }
@@ -218,10 +228,14 @@ class Cluster {
   std::vector<glm::dvec3> visible_points_;
 
   Liveness liveness_;
+  BusyLog busy_;                   // handling messages
+  std::vector<RankClock> clocks_;  // of each rank
+  std::uint64_t activity_asked_us_ = 0;
   CostHistory costs_;
   Scheduler scheduler_;
   Epoch epoch_;
   ViewState view_;
+  ViewState whole_view_;     // of those before it
   std::vector<Step> bands_;  // what each compositor holds
 };
 

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "master/report.h"
 
-#include <map>
 #include <nlohmann/json.hpp>
 
 #include "master/names.h"
 #include "master/stop_rule.h"
+#include "master/traffic.h"
 
 namespace goldthread {
 namespace {
@@ -65,11 +65,9 @@ Json ranks_of(const std::vector<RankState>& ranks) {
 }
 
 Json bytes_of(const std::vector<RankState>& ranks) {
-  std::map<std::string, std::uint64_t> sums;
-  for (const RankState& rank : ranks) {
-    for (const MessageCount& count : rank.sent) sums[count.kind] += count.bytes;
-  }
-  return Json(sums);
+  Json bytes = Json::object();
+  for (const auto& [kind, count] : traffic_of(ranks)) bytes[kind] = count.bytes;
+  return bytes;
 }
 
 }  // namespace

@@ -44,6 +44,7 @@ void ServeJob::run() {
     }
     act();
     tell_status();
+    load_.tell(cluster_, Clock::now(), [&](std::string json) { to_pages(Broadcast{json}); });
   }
 }
 
@@ -114,7 +115,10 @@ void ServeJob::on(const GatewayOpened& event) {
   request_.opened(event.port);
 }
 
-void ServeJob::on(const Audience& event) { audience_ready_ = event.ready; }
+void ServeJob::on(const Audience& event) {
+  audience_ready_ = event.ready;
+  load_.watch(event.load, event.tiles);
+}
 
 void ServeJob::note_input(std::uint32_t viewer, std::uint32_t serial) {
   newest_viewer_ = viewer;

@@ -11,6 +11,7 @@
 #include "master/cine_loop.h"
 #include "master/cluster.h"
 #include "master/frame_policy.h"
+#include "master/load_messages.h"
 #include "master/page_messages.h"
 #include "master/stop_rule.h"
 
@@ -128,6 +129,7 @@ class ServeJob {
   Clock::time_point last_status_{};
   Step told_step_;
   SessionPulse pulse_;
+  LoadTeller load_;
 };
 
 }  // namespace goldthread

@@ -16,11 +16,11 @@ constexpr std::size_t kMostTileBytes = std::size_t{1} << 29;
 }  // namespace
 
 ComputePool::ComputePool(unsigned threads, bool idle_priority, std::function<void()> notify)
-    : notify_(std::move(notify)), tiles_(kMostTileBytes) {
-  for (unsigned i = 0; i < threads; ++i) {
-    threads_.emplace_back([this, idle_priority](const std::stop_token& stop) {
+    : notify_(std::move(notify)), tiles_(kMostTileBytes), running_(threads) {
+  for (std::size_t i = 0; i < threads; ++i) {
+    threads_.emplace_back([this, i, idle_priority](const std::stop_token& stop) {
       if (idle_priority) give_way();
-      work(stop);
+      work(i, stop);
     });
   }
 }
@@ -58,11 +58,15 @@ std::optional<Epoch> ComputePool::take_begun() {
   return std::exchange(begun_, {});
 }
 
-std::chrono::duration<double> ComputePool::busy() const {
-  return std::chrono::nanoseconds(busy_ns_.load());
+BusyLog ComputePool::busy_log(BusyLog::Clock::time_point now) const {
+  const std::lock_guard lock(mutex_);
+  BusyLog log = busy_;
+  for (const auto& begin : running_)
+    if (begin) log.add(*begin, now);
+  return log;
 }
 
-void ComputePool::work(const std::stop_token& stop) {
+void ComputePool::work(std::size_t thread, const std::stop_token& stop) {
   std::unique_lock lock(mutex_);
   while (pushed_.wait(lock, stop, [&] { return !queue_.empty(); })) {
     const RenderTile quantum = queue_.front();
@@ -72,14 +76,16 @@ void ComputePool::work(const std::stop_token& stop) {
     const bool first = last_begun_ != quantum.epoch;
     last_begun_ = quantum.epoch;
     if (first) begun_ = quantum.epoch;
+    running_[thread] = BusyLog::Clock::now();
     lock.unlock();
     if (first) notify_();
     try {
-      cast(*view, quantum, std::move(tile), stop);
+      cast(*view, quantum, std::move(tile), thread, stop);
     } catch (...) {
       note_failure();
     }
     lock.lock();
+    running_[thread].reset();
   }
 }
 
@@ -92,18 +98,20 @@ void ComputePool::note_failure() {
 }
 
 void ComputePool::cast(const CastView& view, const RenderTile& quantum,
-                       std::unique_ptr<TileRefinement> tile, const std::stop_token& stop) {
+                       std::unique_ptr<TileRefinement> tile, std::size_t thread,
+                       const std::stop_token& stop) {
   const auto begin = thread_time();
   auto result = refine_tile(view, quantum, std::move(tile), [&] {
     return epoch_.load(std::memory_order_relaxed) != quantum.epoch.value || stop.stop_requested();
   });
   const auto cost = thread_time() - begin;
-  busy_ns_ += std::chrono::nanoseconds(cost).count();
-  if (!result) return;
+  const auto end = BusyLog::Clock::now();
   const auto cost_us = std::chrono::duration_cast<std::chrono::microseconds>(cost).count();
   {
     const std::lock_guard lock(mutex_);
-    if (quantum.epoch != view_->epoch) return;
+    busy_.add(end - cost, end);  // what it waited for others does not count
+    running_[thread].reset();
+    if (!result || quantum.epoch != view_->epoch) return;
     if (result->tile) tiles_.put(quantum.tile, std::move(result->tile));
     outbox_.push_back(
         {std::move(result->samples),

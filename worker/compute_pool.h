@@ -16,6 +16,7 @@
 #include <thread>
 #include <vector>
 
+#include "common/base/busy_log.h"
 #include "common/protocol/messages.h"
 #include "worker/cast_view.h"
 #include "worker/tile_store.h"
@@ -43,14 +44,14 @@ class ComputePool {
   std::vector<Done> take_done();
   /// The view whose first quantum a thread has begun since the last call.
   std::optional<Epoch> take_begun();
-  /// What the threads have spent on quanta, finished or abandoned.
-  std::chrono::duration<double> busy() const;
+  /// What the threads have spent on quanta until `now`: finished, abandoned and running ones.
+  BusyLog busy_log(BusyLog::Clock::time_point now) const;
 
  private:
-  void work(const std::stop_token& stop);
+  void work(std::size_t thread, const std::stop_token& stop);
   void note_failure();
   void cast(const CastView& view, const RenderTile& quantum, std::unique_ptr<TileRefinement> tile,
-            const std::stop_token& stop);
+            std::size_t thread, const std::stop_token& stop);
 
   std::function<void()> notify_;
   mutable std::mutex mutex_;
@@ -63,7 +64,8 @@ class ComputePool {
   TileStore tiles_;  ///< of the view
   std::exception_ptr failure_;
   std::atomic<std::uint32_t> epoch_{0};
-  std::atomic<std::int64_t> busy_ns_{0};
+  BusyLog busy_;                                                    ///< of the quanta that are over
+  std::vector<std::optional<BusyLog::Clock::time_point>> running_;  ///< since when, by thread
   std::vector<std::jthread> threads_;  // last: they use all of the above
 };
 

@@ -10,6 +10,7 @@
 #include "common/protocol/topology.h"
 #include "common/scene/scene_file.h"
 #include "common/tile/update_pattern.h"
+#include "common/transport/counters.h"
 #include "common/transport/shared_memory.h"
 #include "common/volume/build_volume.h"
 
@@ -202,10 +203,11 @@ void WorkerRole::send_done() {
   }
 }
 
-void WorkerRole::on(const ReportCounters&) {
-  const double own = pool_ ? pool_->busy().count() : 0;
-  const double others = slabs_ ? slabs_->busy().count() : 0;
-  post_.to_master(Counters{post_.sent(), own + others, peak_memory_bytes()});
+void WorkerRole::on(const ReportCounters& message) {
+  const auto now = BusyLog::Clock::now();
+  BusyLog log = pool_ ? pool_->busy_log(now) : BusyLog();
+  if (slabs_) log.add(slabs_->busy_log());
+  post_.to_master(counters_of(post_, message, log, session_.threads, now));
 }
 
 void WorkerRole::on(const Stop& message) {

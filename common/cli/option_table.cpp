@@ -272,6 +272,10 @@ constexpr OptionRow kTable[] = {
     {"report", "--report", "FILE", kOutput,
      "JSON: times, rays, samples, estimated error, tiles, bytes", kBoth,
      [](Options& o, const std::string& t) { return keep_text(t, o.report); }},
+    {"cost-image", "--cost-image", "PLACE", kOutput,
+     "Where the time went: .png in colours, .exr or .tif in seconds per pixel; with --orbit a "
+     "pattern",
+     kRenders, [](Options& o, const std::string& t) { return keep_text(t, o.cost_image); }},
     {"log-level", "--log-level", "LEVEL", kOutput, "error, warn, info or debug [info]", kAll,
      apply_log_level},
     {"size", "--size", "WxH", kPicture, "Image size in pixels [the scene's]", kBoth | kBenches,

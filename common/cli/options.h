@@ -79,7 +79,8 @@ struct Options {
 
   BenchOptions bench;
 
-  std::optional<std::string> report;  ///< file to write
+  std::optional<std::string> report;      ///< file to write
+  std::optional<std::string> cost_image;  ///< image to write, a pattern like `output`
   LogLevel log_level = LogLevel::kInfo;
 };
 

@@ -72,6 +72,14 @@ void expect_size(const fs::path& path, ImageSize size, std::size_t values, std::
   fail(path, fmt::format("{} values are no picture of {}x{}", values, size.width, size.height));
 }
 
+void write_floats(const fs::path& path, ImageSize size, int channels, std::span<const float> values,
+                  const ImageMetadata& metadata) {
+  expect_size(path, size, values.size(), static_cast<std::size_t>(channels));
+  OIIO::ImageSpec spec(size.width, size.height, channels, OIIO::TypeDesc::FLOAT);
+  spec.attribute("Compression", "zip");
+  write(path, spec, OIIO::TypeDesc::FLOAT, values.data(), metadata);
+}
+
 }  // namespace
 
 void write_rgb8(const fs::path& path, ImageSize size, std::span<const std::uint8_t> rgb,
@@ -88,10 +96,12 @@ void write_rgb8(const fs::path& path, ImageSize size, std::span<const std::uint8
 
 void write_rgba32f(const fs::path& path, ImageSize size, std::span<const float> rgba,
                    const ImageMetadata& metadata) {
-  expect_size(path, size, rgba.size(), 4);
-  OIIO::ImageSpec spec(size.width, size.height, 4, OIIO::TypeDesc::FLOAT);
-  spec.attribute("Compression", "zip");
-  write(path, spec, OIIO::TypeDesc::FLOAT, rgba.data(), metadata);
+  write_floats(path, size, 4, rgba, metadata);
+}
+
+void write_grey32f(const fs::path& path, ImageSize size, std::span<const float> grey,
+                   const ImageMetadata& metadata) {
+  write_floats(path, size, 1, grey, metadata);
 }
 
 Result<ImageContent> read_image(const fs::path& path) {

@@ -25,6 +25,10 @@ constexpr const char* kSoftwareKey = "Software";
 /// True if the path's format keeps floats (EXR). `path` must have passed image_path().
 bool is_float_image(const std::filesystem::path& path);
 
+/// True if the path's format can keep floats (EXR, TIFF), which a picture's TIFF does not. `path`
+/// must have passed image_path().
+bool can_be_float_image(const std::filesystem::path& path);
+
 /// The path if its extension is one that can be written (.png .jpg .jpeg .tif .tiff .exr, in any
 /// case), else a Failure of status kUsage that names those.
 Result<std::filesystem::path> image_path(const std::string& path);
@@ -38,6 +42,10 @@ void write_rgb8(const std::filesystem::path& path, ImageSize size,
 /// Writes premultiplied float RGBA rows from the top, 4 floats a pixel, to an .exr (or .tif).
 /// Throws like write_rgb8.
 void write_rgba32f(const std::filesystem::path& path, ImageSize size, std::span<const float> rgba,
+                   const ImageMetadata& metadata);
+
+/// Writes one float a pixel, rows from the top, to an .exr or .tif. Throws like write_rgb8.
+void write_grey32f(const std::filesystem::path& path, ImageSize size, std::span<const float> grey,
                    const ImageMetadata& metadata);
 
 /// A picture as it was in the file: 8-bit values as value/255.

@@ -21,6 +21,10 @@ std::string extension_of(const std::filesystem::path& path) {
 
 bool is_float_image(const std::filesystem::path& path) { return extension_of(path) == ".exr"; }
 
+bool can_be_float_image(const std::filesystem::path& path) {
+  return is_float_image(path) || extension_of(path).starts_with(".tif");
+}
+
 Result<std::filesystem::path> image_path(const std::string& path) {
   constexpr std::array<std::string_view, 6> kKnown = {".png",  ".exr", ".tif",
                                                       ".tiff", ".jpg", ".jpeg"};

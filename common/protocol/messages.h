@@ -7,6 +7,7 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <tuple>
 #include <variant>
@@ -178,12 +179,24 @@ struct MessageCount {
     return std::tuple{&MessageCount::kind, &MessageCount::messages, &MessageCount::bytes};
   }
 };
+/// When a rank computed lately, by its own clock (base/busy_log.h).
+struct Activity {
+  std::uint64_t asked_us = 0;  ///< of the request, as it came
+  std::uint64_t now_us = 0;    ///< of the answer, by the rank's own steady clock
+  std::uint32_t age_us = 0;    ///< what the newest bin ends before that
+  std::vector<std::uint8_t>
+      share;  ///< of what its threads could, 0 … 255; a bin each, oldest first
+  static constexpr auto fields() {
+    return std::tuple{&Activity::asked_us, &Activity::now_us, &Activity::age_us, &Activity::share};
+  }
+};
 struct Counters {
   std::vector<MessageCount> sent;
   double busy_seconds = 0;
   std::uint64_t peak_memory_bytes = 0;  ///< of its process
+  std::optional<Activity> activity;     ///< if it was asked for
   GOLDTHREAD_MESSAGE(Counters, &Counters::sent, &Counters::busy_seconds,
-                     &Counters::peak_memory_bytes)
+                     &Counters::peak_memory_bytes, &Counters::activity)
 };
 /// A rank cannot go on: the job ends with this line and status.
 struct RankFailed {
@@ -222,11 +235,15 @@ struct ViewerDisplay {
   GOLDTHREAD_MESSAGE(ViewerDisplay, &ViewerDisplay::viewer, &ViewerDisplay::serial,
                      &ViewerDisplay::display)
 };
-/// How many pages look on, and whether one of them could take a picture at once.
+/// How many pages look on, whether one of them could take a picture at once, and what of the
+/// cluster's load any of them watches.
 struct Audience {
   std::uint32_t viewers = 0;
   bool ready = false;
-  GOLDTHREAD_MESSAGE(Audience, &Audience::viewers, &Audience::ready)
+  bool load = false;   ///< how busy the ranks are
+  bool tiles = false;  ///< who casts which tile, and how long
+  GOLDTHREAD_MESSAGE(Audience, &Audience::viewers, &Audience::ready, &Audience::load,
+                     &Audience::tiles)
 };
 
 using ToMaster =
@@ -311,8 +328,9 @@ struct RenderTile {
 };
 /// Asks for Counters.
 struct ReportCounters {
-  std::uint8_t unused = 0;
-  GOLDTHREAD_MESSAGE(ReportCounters, &ReportCounters::unused)
+  bool activity = false;       ///< with when the rank computed
+  std::uint64_t asked_us = 0;  ///< by the master's clock; comes back with the activity
+  GOLDTHREAD_MESSAGE(ReportCounters, &ReportCounters::activity, &ReportCounters::asked_us)
 };
 /// The job is over. If a rank was lost, MPI can no longer be finalized: just go.
 struct Stop {

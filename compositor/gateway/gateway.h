@@ -74,10 +74,18 @@ struct DisplayInput {
   std::uint32_t viewer = 0, serial = 0;
   DisplaySettings display;
 };
-/// How many pages are connected, and whether one of them can take a picture now.
+/// What a page watches beside the picture: messages of these types are sent to nobody else.
+struct Watch {
+  bool load = false, tiles = false;
+  bool operator==(const Watch&) const = default;
+};
+/// How many pages are connected, whether one of them can take a picture now, and what any of them
+/// watches.
 struct AudienceChange {
   std::uint32_t viewers = 0;
   bool ready = false;
+  Watch watch{};
+  bool operator==(const AudienceChange&) const = default;
 };
 using GatewayEvent = std::variant<CameraInput, EditInput, SizeInput, DisplayInput, AudienceChange>;
 
@@ -104,7 +112,8 @@ class Gateway {
   /// it is at the call; it is kept for later pages and turns waiting ones into spectators.
   void set_welcome(std::string welcome_json);
   /// `state_json` messages of one `type` replace each other for a page that is slow. Later pages
-  /// get the newest of each type since the last set_welcome, after their welcome.
+  /// get the newest of each type since the last set_welcome, after their welcome. What is watched
+  /// ("load", "tiles") goes to the pages that watch it now, and to no later ones.
   void broadcast(std::string state_json);
   /// JSON for one page; dropped if that page has gone.
   void send(std::uint32_t viewer, std::string json);

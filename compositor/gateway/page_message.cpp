@@ -165,6 +165,14 @@ Result<Message> decode_display(const Json& object) {
 
 Result<Message> decode_drive(const Json&) { return Message{Drive{}}; }
 
+Result<Message> decode_watch(const Json& object) {
+  const Result<bool> load = boolean(object, "load");
+  if (!load) return load.failure();
+  const Result<bool> tiles = boolean(object, "tiles");
+  if (!tiles) return tiles.failure();
+  return Message{Watch{*load, *tiles}};
+}
+
 Result<Message> decode_ack(const Json& object) {
   const Result<std::uint32_t> picture = count(object, "picture");
   if (!picture) return picture.failure();
@@ -181,10 +189,10 @@ struct Decoder {
   std::string_view type;
   Result<Message> (*decode)(const Json&);
 };
-constexpr Decoder kDecoders[] = {{"hello", decode_hello},     {"camera", decode_camera},
-                                 {"edit", decode_edit},       {"size", decode_size},
-                                 {"display", decode_display}, {"drive", decode_drive},
-                                 {"ack", decode_ack},         {"ping", decode_ping}};
+constexpr Decoder kDecoders[] = {
+    {"hello", decode_hello}, {"camera", decode_camera},   {"edit", decode_edit},
+    {"size", decode_size},   {"display", decode_display}, {"drive", decode_drive},
+    {"watch", decode_watch}, {"ack", decode_ack},         {"ping", decode_ping}};
 
 bool reachable(const glm::dvec3& point) {
   const auto near = [](double c) { return std::abs(c) <= kMaxCoordinate_mm; };

@@ -45,13 +45,17 @@ struct Display {
   bool cine = false;
 };
 struct Drive {};
+/// What the page wants to be told from now on; see Session.
+struct Watch {
+  bool load = false, tiles = false;
+};
 struct Ack {
   std::uint32_t picture = 0;
 };
 struct Ping {
   double time = 0;
 };
-using Message = std::variant<Hello, MoveCamera, Edit, Resize, Display, Drive, Ack, Ping>;
+using Message = std::variant<Hello, MoveCamera, Edit, Resize, Display, Drive, Watch, Ack, Ping>;
 
 /// The message in `text`, or what is wrong with its form. Reasons never repeat the page's text.
 Result<Message> decode(std::string_view text);

@@ -42,6 +42,13 @@ void add_newest(Pictures& pictures, const std::shared_ptr<const NumberedPicture>
   pictures.push_back(newest);
 }
 
+/// The messages that a page gets only while it watches, by their type.
+struct Watched {
+  std::string_view type;
+  bool Watch::*wanted;
+};
+constexpr Watched kWatched[] = {{"load", &Watch::load}, {"tiles", &Watch::tiles}};
+
 }  // namespace
 
 Viewer Session::open() {
@@ -85,7 +92,13 @@ AudienceChange Session::audience() const {
     return page.stage == Stage::kWatching && page.unacknowledged.size() < kMaxUnacknowledged &&
            page.waiting.empty();
   });
-  return {present_count(), ready};
+  Watch watch;
+  for (const auto& [viewer, page] : pages_) {
+    if (!present(page)) continue;
+    for (const Watched& kind : kWatched)
+      watch.*kind.wanted = watch.*kind.wanted || page.watch.*kind.wanted;
+  }
+  return {present_count(), ready, watch};
 }
 
 void Session::leave(Viewer viewer) {
@@ -144,6 +157,14 @@ void Session::broadcast(const std::string& state_json) {
   const Json json = message_of_ours(state_json);
   const std::string type = json["type"];
   const auto text = shared_text(state_json);
+  for (const Watched& kind : kWatched) {
+    if (type != kind.type) continue;
+    for (auto& [viewer, page] : pages_) {
+      if (page.stage == Stage::kWatching && page.watch.*kind.wanted)
+        enqueue(viewer, page, {type, text});
+    }
+    return;
+  }
   const auto found = std::find_if(retained_.begin(), retained_.end(),
                                   [&](const Retained& state) { return state.type == type; });
   if (found == retained_.end()) {
@@ -225,7 +246,7 @@ std::optional<Frame> Session::next_region(Page& page) {
 
 std::vector<GatewayEvent> Session::take_events() {
   const AudienceChange now = audience();
-  if (now.viewers != reported_.viewers || now.ready != reported_.ready) {
+  if (now != reported_) {
     reported_ = now;
     events_.push_back(now);
   }

@@ -97,6 +97,7 @@ class Session {
   struct Page {
     Stage stage = Stage::kConnected;
     std::uint32_t serial = 0;  ///< of its last input
+    Watch watch;
     std::deque<QueuedText> texts;
     std::size_t text_bytes = 0;
     std::deque<std::uint32_t> unacknowledged;        ///< pictures begun, oldest first
@@ -123,6 +124,7 @@ class Session {
   void handle(Viewer viewer, Page& page, const page::Resize& resize);
   void handle(Viewer viewer, Page& page, const page::Display& display);
   void handle(Viewer viewer, Page& page, const page::Drive& drive);
+  void handle(Viewer viewer, Page& page, const page::Watch& watch);
   void handle(Viewer viewer, Page& page, const page::Ack& ack);
   void handle(Viewer viewer, Page& page, const page::Ping& ping);
 

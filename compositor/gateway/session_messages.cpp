@@ -103,6 +103,10 @@ void Session::handle(Viewer viewer, Page&, const page::Drive&) {
   tell_driver(0);
 }
 
+void Session::handle(Viewer, Page& page, const page::Watch& watch) {
+  page.watch = {watch.load, watch.tiles};
+}
+
 void Session::handle(Viewer viewer, Page& page, const page::Ack& ack) {
   if (ack.picture > page.last_begun) {
     close(viewer, kPolicy, "ack of a picture that was never sent");

@@ -16,6 +16,7 @@
 #include "common/scene/camera.h"
 #include "common/scene/resolve.h"
 #include "common/scene/scene_file.h"
+#include "master/cost_picture.h"
 #include "master/main/program.h"
 #include "master/main/progress.h"
 #include "master/main/scene_setup.h"
@@ -25,14 +26,17 @@
 namespace goldthread {
 namespace {
 
+/// Of a cost image's colours.
+constexpr const char* kCostScaleKey = "goldthread:costScale";
+
 /// Where the frames go; checked before anything is computed.
 class Output {
  public:
-  explicit Output(const Options& options) {
-    if (options.orbit)
-      pattern_ = value_or_throw(SequencePath::parse(options.output));
+  Output(const std::string& place, bool is_sequence) {
+    if (is_sequence)
+      pattern_ = value_or_throw(SequencePath::parse(place));
     else
-      single_ = options.output;
+      single_ = place;
     value_or_throw(image_path(path(0).string()));
   }
   /// Whether a frame has no place is found before the first is computed.
@@ -59,6 +63,16 @@ void write_frame(const std::filesystem::path& path, const Scene& scene,
   } else {
     write_rgb8(path, frame.size, display_rgb8(frame.rgba, scene.image.color_space), metadata);
   }
+}
+
+void write_cost(const std::filesystem::path& path, const ViewState& view) {
+  const ImageMetadata metadata{{kCostScaleKey, cost_scale(view)},
+                               {kSoftwareKey, std::string("goldthread ") + GOLDTHREAD_VERSION}};
+  if (can_be_float_image(path))
+    write_grey32f(path, view.grid.image, cost_per_pixel(view), metadata);
+  else
+    write_rgb8(path, view.grid.image, cost_rgb8(view), metadata);
+  spdlog::info("{}: {}", path.string(), cost_scale(view));
 }
 
 /// A pipe, a terminal and what a link like /dev/stdout names are written as they are; only a file
@@ -98,9 +112,17 @@ std::string count_of(std::uint64_t number) {
 }  // namespace
 
 void run_render(Cluster& cluster, const Options& options) {
-  const Output output(options);
+  const Output output(options.output, options.orbit.has_value());
   const Orbit orbit = options.orbit.value_or(Orbit{1, 0});
   output.expect_writable(orbit.frames);
+  std::optional<Output> costs;
+  if (options.cost_image) {
+    if (*options.cost_image == options.output)
+      throw FatalError({"--cost-image", "names the place of the picture itself",
+                        "choose another place", ExitStatus::kUsage});
+    costs.emplace(*options.cost_image, options.orbit.has_value());
+    costs->expect_writable(orbit.frames);
+  }
   if (options.report) expect_report_writable(*options.report);
   Scene scene = scene_of(options);
   const auto begin = Clock::now();
@@ -130,6 +152,7 @@ void run_render(Cluster& cluster, const Options& options) {
     scene.camera = goldthread::orbit(first, i * orbit.degrees / orbit.frames);
     RenderedFrame frame = render_frame(cluster, scene, request);
     write_frame(output.path(i), scene, frame);
+    if (costs) write_cost(costs->path(i), frame.view);
     const StepState* shown = frame.view.shown();
     spdlog::info("{}: {}×{}, error ± {:.2f}/255, {} rays ({:.2f} a pixel), {:.0f} ms",
                  output.path(i).string(), frame.size.width, frame.size.height,

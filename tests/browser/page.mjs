@@ -6,12 +6,21 @@ import { existsSync } from 'node:fs';
 import { createRequire } from 'node:module';
 import path from 'node:path';
 import { setTimeout as pause } from 'node:timers/promises';
+import { start, startRanks } from '../cluster/support/program.mjs';
 
 export const chromiumPath = process.env.CHROMIUM ?? '/usr/bin/chromium';
 const packages = process.env.GOLDTHREAD_VIEWER_PACKAGES ?? '';
 /** Why no page can be opened here; empty if one can. */
 export const missing = !existsSync(chromiumPath) ? `there is no ${chromiumPath} (CHROMIUM names another)`
   : !existsSync(path.join(packages, 'playwright-core')) ? 'playwright-core is not installed' : '';
+
+/** A session of `ranks` under mpirun, or of one process, at `url` as soon as it serves. */
+export async function serve(scene, options, ranks = 0) {
+  const args = ['serve', scene, '--port', '0', ...options];
+  const session = ranks > 0 ? startRanks(ranks, args, { seconds: 280 }) : start(args, { seconds: 280 });
+  await session.until(() => /http:\S+\n/.test(session.stdout));
+  return Object.assign(session, { url: session.stdout.match(/http:\S+/)[0] });
+}
 
 export async function openBrowser() {
   const { chromium } = createRequire(path.join(packages, 'x.js'))('playwright-core');
@@ -103,7 +112,7 @@ export class SessionPage {
 
   /** A drag across the canvas in `steps`, by (x, y) CSS pixels each; `watch` is called at every step. */
   async drag(steps, x, y, watch = async () => {}) {
-    const box = await this.page.locator('canvas').boundingBox();
+    const box = await this.page.locator('canvas').first().boundingBox();
     const from = { x: box.x + box.width / 2, y: box.y + box.height / 2 };
     await this.page.mouse.move(from.x, from.y);
     await this.page.mouse.down();

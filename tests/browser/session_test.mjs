@@ -6,10 +6,10 @@
 import assert from 'node:assert/strict';
 import { existsSync } from 'node:fs';
 import test, { after, before } from 'node:test';
-import { headScene, headVolume, inScratch, run, start, startRanks } from '../cluster/support/program.mjs';
+import { headScene, headVolume, inScratch, run, start } from '../cluster/support/program.mjs';
 import { writeJson } from '../cluster/support/data.mjs';
 import { covered, difference, readPng } from '../cluster/support/picture.mjs';
-import { linkOf, missing, openBrowser, SessionPage, sceneOfState } from './page.mjs';
+import { linkOf, missing, openBrowser, serve, SessionPage, sceneOfState } from './page.mjs';
 
 const absent = missing || (existsSync(headVolume) ? '' : 'the head of Debian\'s mricron-data is not installed');
 if (absent) {
@@ -22,12 +22,7 @@ const kSize = '256x256';
 // Else it would depend on the error that is asked for.
 const kStep = ['--step', '0.5'];
 
-async function serve(scene, options = []) {
-  const args = ['serve', scene, '--port', '0', ...kStep, ...options];
-  const session = mpi ? startRanks(3, args, { seconds: 280 }) : start(args, { seconds: 280 });
-  await session.until(() => /http:\S+\n/.test(session.stdout));
-  return Object.assign(session, { url: session.stdout.match(/http:\S+/)[0] });
-}
+const served = (scene, options = []) => serve(scene, [...kStep, ...options], mpi ? 3 : 0);
 
 let offlineCount = 0;
 /** What `goldthread render` makes of what the page says it shows, refined as far. */
@@ -49,7 +44,7 @@ async function expectOffline(page) {
 let browser, session, page;
 before(async () => {
   browser = await openBrowser();
-  session = await serve(headScene, ['--size', kSize]);
+  session = await served(headScene, ['--size', kSize]);
   page = await SessionPage.open(browser, session.url);
 });
 after(async () => {
@@ -175,7 +170,7 @@ if (!mpi) {
 }
 
 test('The picture of a scene without a size follows the window', async () => {
-  const open = await serve(headVolume);
+  const open = await served(headVolume);
   const window = await SessionPage.open(browser, open.url, { width: 400, height: 400 });
   await window.restAt(await window.stage());
   for (const [width, height] of [[480, 360], [300, 420]]) {

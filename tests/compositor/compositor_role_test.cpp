@@ -10,6 +10,7 @@
 
 #include <cstring>
 
+#include "common/transport/counters.h"
 #include "common/transport/loopback.h"
 #include "tests/compositor/packed_samples.h"
 
@@ -254,6 +255,21 @@ TEST_F(CompositorRoleTest, CountsWhatItSent) {
   ASSERT_EQ(counters.sent.size(), 2u);
   EXPECT_EQ(counters.sent[0].kind, "BandReady");
   EXPECT_EQ(counters.sent[1].kind, "Hello");
+}
+
+TEST_F(CompositorRoleTest, TellsWhenItComputedIfItIsAsked) {
+  begin_session();
+  master_.to_compositor(kCompositor, ReportCounters{false, 5});
+  master_.to_compositor(kCompositor, ReportCounters{true, 7});
+  run();
+  ASSERT_EQ(received<Counters>().size(), 2u);
+  EXPECT_FALSE(received<Counters>()[0]->activity);
+  const auto& activity = received<Counters>()[1]->activity;
+  ASSERT_TRUE(activity);
+  EXPECT_EQ(activity->asked_us, 7u);
+  EXPECT_EQ(activity->share.size(), std::size_t(BusyLog::kBins));
+  EXPECT_LT(activity->age_us, 50'000u);
+  EXPECT_LE(activity->now_us, microseconds_of(BusyLog::Clock::now()));
 }
 
 /// The second of three compositors: what it encodes goes to the first, whom the test plays.

@@ -73,7 +73,7 @@ TEST(ComputePool, CastsQuantaInOrderAndReportsThem) {
     EXPECT_EQ(done[i].report.samples, 10 * kWhole.rays);
   }
   EXPECT_GE(kWhole.rays, 4096u);
-  EXPECT_GT(pool.pool.busy().count(), 0);
+  EXPECT_GT(pool.pool.busy_log(BusyLog::Clock::now()).total().count(), 0);
 }
 
 TEST(ComputePool, GoesOnWithTheTilesOfTheViewAndForgetsThoseOfOlderOnes) {
@@ -119,6 +119,24 @@ TEST(ComputePool, TellsThatAViewHasBegunBeforeItsFirstTileIsDone) {
   EXPECT_TRUE(pool.pool.take_done().empty());
   held->allow(kWhole.batches);
   EXPECT_EQ(pool.take(1).size(), 1u);
+}
+
+TEST(ComputePool, AQuantumThatRunsCountsAsBusyUntilNow) {
+  NotifyingPool pool(2);
+  const auto held = std::make_shared<HeldSource>();
+  pool.pool.begin_view(view(1, held));
+  pool.pool.push(tile(1, 0));
+  held->wait_until_entered(1);
+  const auto now = BusyLog::Clock::now();
+  const auto total = [&](BusyLog::Clock::time_point time) {
+    return pool.pool.busy_log(time).total().count();
+  };
+  EXPECT_GT(total(now), 0);
+  EXPECT_NEAR(total(now + std::chrono::seconds(3)), total(now) + 3, 1e-6) << "one thread, not two";
+  held->allow(kWhole.batches);
+  pool.take(1);
+  EXPECT_EQ(total(now + std::chrono::seconds(60)), total(now + std::chrono::seconds(30)))
+      << "it is over";
 }
 
 TEST(ComputePool, IgnoresQuantaWithoutOrOfAnotherView) {

@@ -9,8 +9,10 @@ import { WebSocketServer, type WebSocket } from 'ws';
 import { orbit, type Camera } from '../src/camera';
 import { kDefaultDisplay, type Display } from '../src/display';
 import type { Phase, ToGateway } from '../src/protocol';
+import type { Watch } from '../src/load/messages';
 import { sceneOf, editableOf } from '../src/scene';
 import { regionsOf } from './encode';
+import { loadOf, tilesOf } from './load';
 import { kTarget, refined, type Refined } from './refine';
 import { scene, volume } from './scene';
 
@@ -33,7 +35,7 @@ const kCineSamples = 1 / 4;
 const pause = (milliseconds: number): Promise<void> => new Promise((resolve) => setTimeout(resolve, milliseconds));
 
 class MockGateway {
-  private pages_ = new Map<number, { socket: WebSocket; unacknowledged: number }>();
+  private pages_ = new Map<number, { socket: WebSocket; unacknowledged: number; watch: Watch }>();
   private numbers_ = 0;
   private driver_ = 0;
   private scene_: typeof scene & Json = structuredClone(scene);
@@ -48,6 +50,7 @@ class MockGateway {
   constructor() {
     void this.render();
     setInterval(() => this.status(), 250).unref();
+    setInterval(() => this.tellWatchers(), 250).unref();
   }
 
   join(socket: WebSocket): void {
@@ -71,6 +74,11 @@ class MockGateway {
       if (page) page.unacknowledged = 0;
       return;
     }
+    if (message.type === 'watch') {
+      const page = this.pages_.get(viewer);
+      if (page) page.watch = { load: message.load, tiles: message.tiles };
+      return;
+    }
     if (message.type === 'drive') {
       this.driver_ = viewer;
       return this.all({ type: 'driver', driver: viewer, viewers: this.pages_.size });
@@ -89,7 +97,7 @@ class MockGateway {
       socket.send(JSON.stringify({ type: 'loading', what: 'phantom.nii.gz', done: done * 16e6, total: 64e6 }));
       await pause(150);
     }
-    this.pages_.set(viewer, { socket, unacknowledged: 0 });
+    this.pages_.set(viewer, { socket, unacknowledged: 0, watch: { load: false, tiles: false } });
     this.driver_ ||= viewer;
     socket.send(JSON.stringify({
       type: 'welcome', protocol: 2, version: '0.1.0-mock', viewer, driver: this.driver_, viewers: this.pages_.size,
@@ -195,6 +203,16 @@ class MockGateway {
       if (page.unacknowledged >= 2) continue;
       ++page.unacknowledged;
       for (const region of regions) page.socket.send(region);
+    }
+  }
+
+  /** Only what a page watches is made up. */
+  private tellWatchers(): void {
+    const now = performance.now();
+    const { width, height } = this.scene_.image;
+    for (const { socket, watch } of this.pages_.values()) {
+      if (watch.load) socket.send(JSON.stringify(loadOf(now, this.phase_ === 'moving')));
+      if (watch.tiles) socket.send(JSON.stringify(tilesOf(this.epoch_, width, height)));
     }
   }
 

@@ -56,6 +56,14 @@ await shoot('rocking', { viewport: desktop, colorScheme: 'light' }, async (page)
   await page.waitForFunction(() => globalThis.goldthread.state().cine.playing, null, { timeout: 90000 });
   await open('Image')(page);
 });
+for (const [name, key] of [['owners', 'o'], ['cost', 't']]) {
+  await shoot(`load-${name}`, { viewport: desktop, colorScheme: name === 'cost' ? 'light' : 'dark' }, async (page) => {
+    await page.keyboard.press('l');
+    await page.keyboard.press(key);
+    await page.waitForFunction(() => document.querySelector('canvas.tiles') && document.querySelector('.timeline canvas'));
+    await page.waitForTimeout(600);
+  });
+}
 await shoot('lists', { viewport: { width: 1280, height: 1500 }, colorScheme: 'light' }, open('all'));
 await shoot('help', { viewport: desktop, colorScheme: 'dark' }, (page) => page.keyboard.press('?'));
 await shoot('phone', { viewport: { width: 390, height: 844 }, colorScheme: 'dark', hasTouch: true });

@@ -32,6 +32,10 @@ function stateOf(session: Session, connection: Connection, view: PictureView) {
     editable: session.editable,
     size: session.size,
     status: session.status,
+    /** What the server is asked for beside the picture, and what it told of that last. */
+    watches: session.watches,
+    load: session.load,
+    tiles: session.tiles,
     latencyMedian: session.latencies.quantile(0.5),
     latencyP95: session.latencies.quantile(0.95),
     notice: session.notice,

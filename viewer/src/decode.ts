@@ -15,6 +15,11 @@ function bad(where: string, wanted: string): never {
 export const number: Decoder<number> = (value, where) =>
   typeof value === 'number' && Number.isFinite(value) ? value : bad(where, 'a finite number');
 
+export const positive: Decoder<number> = (value, where) => {
+  const known = number(value, where);
+  return known > 0 ? known : bad(where, 'a positive number');
+};
+
 export const count: Decoder<number> = (value, where) =>
   typeof value === 'number' && Number.isSafeInteger(value) && value >= 0 ? value : bad(where, 'a count');
 

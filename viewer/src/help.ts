@@ -14,7 +14,7 @@ const kHelp: readonly (readonly [string, readonly (readonly [string, string])[]]
   ]],
   ['Keys everywhere', [
     ['r', 'frame the volume'], ['Home', 'the scene’s camera'], ['p', 'fold or unfold the panel'], ['s', 'save a screenshot'],
-    ['c', 'rock when at rest'],
+    ['c', 'rock when at rest'], ['o', 'who cast each tile'], ['t', 'the time each tile took'], ['l', 'the load of each rank'],
     ['Ctrl + Z, Ctrl + Shift + Z', 'undo, redo'], ['?', 'this help'],
   ]],
   ['On a transfer function’s node', [

@@ -9,6 +9,8 @@ import { el } from './dom';
 import { helpDialog } from './help';
 import { Interactor } from './interactor';
 import { lookOf } from './link';
+import { loadPanel } from './load/panel';
+import { TileOverlay } from './load/tile-overlay';
 import { overlay } from './overlay';
 import { appearancePanel } from './panels/appearance';
 import { imagePanel } from './panels/image';
@@ -40,7 +42,9 @@ const canvas = el('canvas', {
 });
 const stage = el('main', { class: 'stage' }, canvas);
 const view = new PictureView(canvas, () => session.rocks);
-const place = keepLaidOut(canvas, stage);
+const tiles = new TileOverlay(session, canvas);
+const place = keepLaidOut(canvas, stage, () => tiles.schedule());
+const load = loadPanel(session, tiles);
 const help = helpDialog();
 
 function useToken(token: string): void {
@@ -82,7 +86,15 @@ function panel(): HTMLElement {
   const head = el('header', {}, el('h1', {}, 'Goldthread'), title, el('div', { class: 'session' }, badge, takeOver,
     el('span', { class: 'grow' }), themeButton(), button('Help', 'Gestures and keys (?)', () => help.showModal(), 'quiet')));
   return el('aside', { class: 'panel', id: 'panel', aria: { label: 'Controls' } }, head,
-    el('div', { class: 'scroll' }, editing, sharePanel(session, canvas), ...statusPanel(session)));
+    el('div', { class: 'scroll' }, editing, sharePanel(session, canvas), ...statusPanel(session), load));
+}
+
+/** Opens the load panel where it can be seen, or closes it. */
+function toggleLoad(): void {
+  const folded = document.body.classList.contains('folded');
+  if (folded) fold.click();
+  load.open = folded || !load.open;
+  if (load.open) load.scrollIntoView();
 }
 
 const side = panel();
@@ -93,7 +105,7 @@ const fold = button('Panel', 'Fold or unfold the panel (p)', () => {
 fold.setAttribute('aria-expanded', 'true');
 fold.setAttribute('aria-controls', 'panel');
 const over = overlay(session, connection, useToken);
-stage.append(over.line, over.element, fold);
+stage.append(over.line, over.element, tiles.legend, fold);
 document.body.append(stage, side, help);
 showRefusals(session, side);
 
@@ -106,6 +118,8 @@ installShortcuts(session, {
   help: () => (help.open ? help.close() : help.showModal()),
   fold: () => fold.click(),
   screenshot: () => saveScreenshot(session, canvas),
+  overlay: (mode) => tiles.toggle(mode),
+  load: toggleLoad,
 });
 installDebugHandle(session, connection, view, canvas);
 
@@ -121,4 +135,5 @@ view.shown.listen((picture) => {
 });
 session.changed.listen((topic) => { if (topic === 'driver') applyLink(); });
 window.addEventListener('hashchange', applyLink);
+document.addEventListener('visibilitychange', () => session.hide(document.visibilityState !== 'visible'));
 connection.retry();

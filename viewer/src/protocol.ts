@@ -5,6 +5,7 @@
 import * as decode from './decode';
 import { type Camera } from './camera';
 import { displayFrom, displayOf, type Display } from './display';
+import { loadFrom, tilesFrom, type Load, type Tiles, type Watch } from './load/messages';
 import { failure, success, type Result } from './result';
 import { cameraOf, sceneOf, type Edit, type SceneState } from './scene';
 import type { Vec3 } from './vector';
@@ -18,6 +19,7 @@ export type ToGateway =
   | { type: 'size'; serial: number; width: number; height: number }
   | ({ type: 'display'; serial: number } & Display)
   | { type: 'drive' }
+  | ({ type: 'watch' } & Watch)
   | { type: 'ack'; picture: number }
   | { type: 'ping'; time: number };
 
@@ -92,6 +94,8 @@ export type FromGateway =
   | { readonly type: 'display'; readonly display: Display; readonly viewer: number; readonly serial: number }
   | ({ readonly type: 'refused'; readonly serial: number } & Failure)
   | ({ readonly type: 'status' } & Status)
+  | { readonly type: 'load'; readonly load: Load }
+  | { readonly type: 'tiles'; readonly tiles: Tiles }
   | ({ readonly type: 'failed' } & Failure)
   | { readonly type: 'pong'; readonly time: number };
 
@@ -186,6 +190,8 @@ const decoders: { [K in FromGateway['type']]: (at: At) => Omit<Extract<FromGatew
   display: (at) => ({ display: displayFrom(at), ...causeOf(at) }),
   refused: (at) => ({ serial: at('serial', decode.optional(decode.count, 0)), ...failureOf(at) }),
   status: statusOf,
+  load: loadFrom,
+  tiles: tilesFrom,
   failed: failureOf,
   pong: (at) => ({ time: at('time', decode.number) }),
 };

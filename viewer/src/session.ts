@@ -12,13 +12,14 @@ import { Flow } from './flow';
 import { History } from './history';
 import { Latencies, Rate } from './latency';
 import type { Look } from './link';
+import type { Load, Tiles, Watch } from './load/messages';
 import type { ShownPicture } from './picture-view';
 import type { Failure, FromGateway, Status, VolumeInfo, Welcome } from './protocol';
 import { ErrorHistory } from './quality';
 import { difference, type Edit, type Editable } from './scene';
 import { Signal } from './signal';
 
-export type Topic = 'connection' | 'driver' | 'camera' | 'scene' | 'display' | 'status' | 'picture' | 'refused' | 'notice';
+export type Topic = 'connection' | 'driver' | 'camera' | 'scene' | 'display' | 'status' | 'load' | 'tiles' | 'picture' | 'refused' | 'notice';
 
 export class Session {
   readonly changed = new Signal<Topic>();
@@ -31,6 +32,9 @@ export class Session {
   loading: { what: string; done: number; total: number } | null = null;
   failed: Failure | null = null;
   status: Status | null = null;
+  /** What the server told last of what this page watches. */
+  load: Load | null = null;
+  tiles: Tiles | null = null;
   volume: VolumeInfo | null = null;
   picture: ShownPicture | null = null;
   camera: Camera | null = null;
@@ -55,6 +59,9 @@ export class Session {
   private askedSize_: { width: number; height: number } | null = null;
   private inputTime_ = 0;
   private frame_ = 0;
+  private wished_: Watch = { load: false, tiles: false };
+  private hidden_ = false;
+  private watched_: Watch = { load: false, tiles: false };
 
   constructor(private readonly connection_: Connection) {
     connection_.message.listen((message) => this.take(message));
@@ -93,6 +100,11 @@ export class Session {
   /** Inputs that no picture on the canvas answers yet; those that wait to be sent count as one. */
   get unanswered(): number {
     return this.flow_.unanswered + (this.hasUnsent() ? 1 : 0);
+  }
+
+  /** What the server is asked for beside the picture. */
+  get watches(): Watch {
+    return this.watched_;
   }
 
   get serial(): number {
@@ -149,6 +161,23 @@ export class Session {
     this.connection_.send({ type: 'drive' });
   }
 
+  watch(change: Partial<Watch>): void {
+    this.wished_ = { ...this.wished_, ...change };
+    this.tellWatch();
+  }
+
+  /** Whether nobody can see the page now: it watches nothing then. */
+  hide(hidden: boolean): void {
+    this.hidden_ = hidden;
+    this.tellWatch();
+  }
+
+  /** The place of a rank among the workers. */
+  workerIndex(rank: number): number {
+    const first = this.status?.ranks.find(({ role }) => role === 'worker')?.rank ?? 0;
+    return Math.max(0, rank - first);
+  }
+
   say(notice: string): void {
     this.notice = notice;
     this.changed.emit('notice');
@@ -166,6 +195,15 @@ export class Session {
     }
     this.connection_.send({ type: 'ack', picture: picture.picture });
     this.changed.emit('picture');
+  }
+
+  private tellWatch(): void {
+    const { load, tiles } = this.hidden_ ? { load: false, tiles: false } : this.wished_;
+    if (!this.connected || (load === this.watched_.load && tiles === this.watched_.tiles)) return;
+    if (!load) this.load = null;
+    if (!tiles) this.tiles = null;
+    this.watched_ = { load, tiles };
+    this.connection_.send({ type: 'watch', load, tiles });
   }
 
   private restore(state: Editable | null, control: string): void {
@@ -231,7 +269,8 @@ export class Session {
     if (state !== 'open') {
       this.viewer = 0;
       this.loading = null;
-      this.status = null;
+      this.status = this.load = this.tiles = null;
+      this.watched_ = { load: false, tiles: false };
       this.dropInputs();
     } else {
       this.flow_.reset();
@@ -264,6 +303,15 @@ export class Session {
       case 'status':
         this.status = message;
         return this.changed.emit('status');
+      // What was on its way when the page stopped to watch is dropped.
+      case 'load':
+        if (!this.watched_.load) return;
+        this.load = message.load;
+        return this.changed.emit('load');
+      case 'tiles':
+        if (!this.watched_.tiles) return;
+        this.tiles = message.tiles;
+        return this.changed.emit('tiles');
       case 'failed':
         this.failed = message;
         this.dropInputs();
@@ -296,6 +344,7 @@ export class Session {
     this.original ??= { camera: scene.camera, editable: scene.editable };
     this.history_.clear();
     this.movedCamera_ = false;
+    this.tellWatch();
     this.changed.emit('connection');
     this.changed.emit('driver');
     this.changed.emit('camera');

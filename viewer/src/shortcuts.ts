@@ -1,12 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
 // Keys that work everywhere except where text is typed.
 
+import type { OverlayMode } from './load/tile-overlay';
 import type { Session } from './session';
 
 export interface ShortcutActions {
   help(): void;
   fold(): void;
   screenshot(): void;
+  /** On, or off if it is on. */
+  overlay(mode: OverlayMode): void;
+  load(): void;
 }
 
 const typing = (target: EventTarget | null): boolean =>
@@ -33,6 +37,9 @@ export function installShortcuts(session: Session, actions: ShortcutActions): vo
     else if (key === 'p') actions.fold();
     else if (key === 's') actions.screenshot();
     else if (key === 'c') toggleCine(session);
+    else if (key === 'o') actions.overlay('owners');
+    else if (key === 't') actions.overlay('cost');
+    else if (key === 'l') actions.load();
     else return;
     event.preventDefault();
   });

@@ -15,10 +15,12 @@ export function layout(width: number, height: number, stageWidth: number, stageH
   };
 }
 
-export function keepLaidOut(canvas: HTMLCanvasElement, stage: HTMLElement): () => void {
+/** `placed` is called whenever the canvas was laid out. */
+export function keepLaidOut(canvas: HTMLCanvasElement, stage: HTMLElement, placed: () => void): () => void {
   const place = (): void => {
     const box = layout(canvas.width, canvas.height, Math.max(stage.clientWidth, 1), Math.max(stage.clientHeight, 1), devicePixelRatio || 1);
     for (const [key, value] of Object.entries(box)) canvas.style.setProperty(key, `${value}px`);
+    placed();
   };
   new ResizeObserver(place).observe(stage);
   return place;

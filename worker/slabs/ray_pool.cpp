@@ -61,8 +61,9 @@ std::vector<RayPool::Done> RayPool::take_done() {
   return std::exchange(done_, {});
 }
 
-std::chrono::duration<double> RayPool::busy() const {
-  return std::chrono::nanoseconds(busy_ns_.load());
+BusyLog RayPool::busy_log() const {
+  const std::lock_guard lock(mutex_);
+  return busy_;
 }
 
 void RayPool::work(const std::stop_token& stop) {
@@ -75,8 +76,10 @@ void RayPool::work(const std::stop_token& stop) {
     try {
       const auto begin = thread_time();
       Done done = advance(task, *caster);
-      busy_ns_ += (thread_time() - begin).count();
+      const auto cost = thread_time() - begin;
+      const auto end = BusyLog::Clock::now();
       lock.lock();
+      busy_.add(end - cost, end);
       if (task.request.epoch == epoch_) done_.push_back(std::move(done));
     } catch (...) {
       if (!lock.owns_lock()) lock.lock();

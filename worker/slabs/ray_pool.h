@@ -3,7 +3,6 @@
 // The threads that take other workers' rays through this worker's slab. They wait for nobody, so
 // that those who wait for them come through.
 
-#include <atomic>
 #include <condition_variable>
 #include <deque>
 #include <exception>
@@ -14,6 +13,7 @@
 #include <thread>
 #include <vector>
 
+#include "common/base/busy_log.h"
 #include "common/protocol/messages.h"
 #include "worker/slabs/slab_caster.h"
 
@@ -35,7 +35,8 @@ class RayPool {
   void push(Rank from, AdvanceRays request);
   /// Throws what a thread failed with, once.
   std::vector<Done> take_done();
-  std::chrono::duration<double> busy() const;
+  /// When the threads computed.
+  BusyLog busy_log() const;
 
  private:
   struct Task {
@@ -54,7 +55,7 @@ class RayPool {
   std::vector<Task> early_;  ///< of views that were not begun here yet
   std::vector<Done> done_;
   std::exception_ptr failure_;
-  std::atomic<std::int64_t> busy_ns_{0};
+  BusyLog busy_;
   std::vector<std::jthread> threads_;  // last: they use all of the above
 };
 

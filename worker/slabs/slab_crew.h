@@ -3,7 +3,6 @@
 // A worker's part in a volume that lies in slabs: it takes the rays of others through its own slab,
 // and has its own taken through theirs.
 
-#include <chrono>
 #include <functional>
 #include <memory>
 
@@ -37,7 +36,7 @@ class SlabCrew {
   void worker_gone(int worker);
   /// Sends what there is to send.
   void send(Post& post);
-  std::chrono::duration<double> busy() const { return pool_.busy(); }
+  BusyLog busy_log() const { return pool_.busy_log(); }
 
  private:
   Topology topology_;

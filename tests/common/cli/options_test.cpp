@@ -60,7 +60,8 @@ TEST(CommandLine, DefaultsAreThePromisedOnes) {
   EXPECT_EQ(render.input, "s.json");
   EXPECT_EQ(render.output, "a.png");
   EXPECT_FALSE(render.size || render.step_mm || render.workers || render.threads ||
-               render.samples || render.time_s || render.orbit || render.token || render.report);
+               render.samples || render.time_s || render.orbit || render.token || render.report ||
+               render.cost_image);
   EXPECT_EQ(render.compositors, 1);
   EXPECT_EQ(render.tile_px, 64);
   EXPECT_EQ(render.schedule, Schedule::kSquares);
@@ -80,7 +81,7 @@ TEST(CommandLine, EveryOptionOfRenderIsRead) {
        "--sampling",    "every-pixel", "--error",  "1.5",        "--samples",  "16",
        "--time",        "2.5",         "--step",   "0.25",       "--filter",   "bicubic",
        "--orbit",       "12,90",       "--data",   "replicated", "--report",   "r.json",
-       "--log-level",   "debug",       "--output", "f%03d.exr",  "s.json"});
+       "--cost-image",  "c%d.png",     "--log-level",   "debug",       "--output", "f%03d.exr",  "s.json"});
   EXPECT_EQ(o.input, "s.json");
   EXPECT_EQ(o.output, "f%03d.exr");
   EXPECT_EQ(o.size, (ImageSize{800, 600}));
@@ -97,6 +98,7 @@ TEST(CommandLine, EveryOptionOfRenderIsRead) {
   EXPECT_EQ(o.step_mm, 0.25);
   EXPECT_EQ(o.orbit, (Orbit{12, 90}));
   EXPECT_EQ(o.report, "r.json");
+  EXPECT_EQ(o.cost_image, "c%d.png");
   EXPECT_EQ(o.log_level, LogLevel::kDebug);
 }
 

@@ -31,6 +31,12 @@ std::vector<float> ramp32() {
   return pixels;
 }
 
+std::vector<float> ramp_of_grey() {
+  std::vector<float> pixels(7 * 5);
+  for (std::size_t i = 0; i < pixels.size(); ++i) pixels[i] = 1e-7f * static_cast<float>(i * i);
+  return pixels;
+}
+
 Scene scene() {
   return value_or_throw(
       read_scene(GOLDTHREAD_SOURCE_DIR "/tests/common/scene/data/full_scene.json"));
@@ -81,6 +87,18 @@ TEST_F(ImageFile, ExrGivesEveryFloatBack) {
   EXPECT_EQ(content.size, kSize);
   EXPECT_EQ(content.channels, 4);
   EXPECT_EQ(content.pixels, ramp32());
+}
+
+TEST_F(ImageFile, OneFloatAPixelComesBackFromExrAndTiff) {
+  for (const char* name : {"a.exr", "a.tif"}) {
+    EXPECT_TRUE(can_be_float_image(name));
+    write_grey32f(dir_ / name, kSize, ramp_of_grey(), {});
+    const ImageContent content = read(name);
+    EXPECT_EQ(content.size, kSize);
+    EXPECT_EQ(content.channels, 1);
+    EXPECT_EQ(content.pixels, ramp_of_grey()) << name;
+  }
+  EXPECT_FALSE(can_be_float_image("a.png"));
 }
 
 TEST_F(ImageFile, JpegIsClose) {

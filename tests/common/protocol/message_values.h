@@ -80,6 +80,10 @@ template <class T>
 constexpr bool is_vector = false;
 template <class T>
 constexpr bool is_vector<std::vector<T>> = true;
+template <class T>
+constexpr bool is_optional = false;
+template <class T>
+constexpr bool is_optional<std::optional<T>> = true;
 
 /// Equal to the bit: NaN equals itself, and −0 is not 0.
 template <class T>
@@ -90,6 +94,8 @@ bool same(const T& a, const T& b) {
       if (!same(a[i], b[i])) return false;
     }
     return true;
+  } else if constexpr (is_optional<T>) {
+    return a.has_value() == b.has_value() && (!a || same(*a, *b));
   } else if constexpr (std::is_arithmetic_v<T> || std::is_enum_v<T>) {
     return std::memcmp(&a, &b, sizeof(T)) == 0;
   } else if constexpr (HasFields<T>) {
@@ -105,8 +111,9 @@ bool same(const T& a, const T& b) {
 
 /// Converts to anything: stands for one member when an aggregate's members are counted.
 struct AnyMember {
+  // An optional makes itself of its value; both ways at once are none.
   template <class T>
-  operator T() const;
+  requires(!is_optional<T>) operator T() const;
 };
 
 template <class T, std::size_t... I>

@@ -67,6 +67,7 @@ TEST_F(HostileTest, MalformedMessagesCloseWithPolicyAndAReason) {
                              R"({"type":"unknown"})",
                              R"({"type":"camera","serial":1})",
                              R"({"type":"ack","picture":9})",
+                             R"({"type":"watch","load":"yes","tiles":false})",
                              kHello.dump(),
                              R"({"type":"drive"} trailing)"};
   for (const std::string& text : bad) {
@@ -93,6 +94,16 @@ TEST_F(HostileTest, AWideMessageIsJustAnUnknownOne) {
   std::string wide = R"({"type":"x","a":[0)";
   while (wide.size() < page::kMaxMessageBytes - 10) wide += ",0";
   EXPECT_EQ(closed_after(wide + "]}").close_reason, "type is unknown");
+}
+
+TEST_F(HostileTest, APageThatChangesItsMindWithoutEndFillsNothing) {
+  Page page = enter();
+  page.expect("welcome");
+  for (int i = 0; i < 20'000; ++i)
+    page.send({{"type", "watch"}, {"load", i % 2 == 0}, {"tiles", i % 3 == 0}});
+  page.send({{"type", "ping"}, {"time", 1}});
+  EXPECT_EQ(page.expect("pong").at("time"), 1);
+  EXPECT_LE(gateway_.take_events().size(), 1U) << "an audience is a state";
 }
 
 TEST_F(HostileTest, AGiantMessageIsNotTaken) {

@@ -42,6 +42,9 @@ TEST(PageMessage, EachMessageOfTheProtocolIsDecoded) {
   EXPECT_EQ(display.filter, "box");
   EXPECT_EQ(display.update, "50");
   EXPECT_TRUE(display.cine);
+  const auto watch = decoded<Watch>(R"({"type":"watch","load":true,"tiles":false})");
+  EXPECT_TRUE(watch.load);
+  EXPECT_FALSE(watch.tiles);
   decoded<Drive>(R"({"type":"drive"})");
   EXPECT_EQ(decoded<Ack>(R"({"type":"ack","picture":4294967295})").picture, 4294967295U);
   EXPECT_EQ(decoded<Ping>(R"({"type":"ping","time":12.5})").time, 12.5);
@@ -85,6 +88,13 @@ TEST(PageMessage, EverythingElseIsMalformed) {
       R"({"type":"display","serial":1,"filter":"box","update":50,"cine":true})",
       R"({"type":"display","serial":1,"filter":"box","update":"50","cine":1})",
       R"({"type":"display","serial":1,"filter":"box","update":"50"})",
+      R"({"type":"watch"})",
+      R"({"type":"watch","load":true})",
+      R"({"type":"watch","tiles":true})",
+      R"({"type":"watch","load":1,"tiles":true})",
+      R"({"type":"watch","load":true,"tiles":"true"})",
+      R"({"type":"watch","load":true,"tiles":[true]})",
+      R"({"type":"watch","load":null,"tiles":null})",
       R"({"type":"ack"})",
       R"({"type":"ack","picture":-3})",
       R"({"type":"ping","time":null})",

@@ -504,6 +504,83 @@ TEST_F(SessionTest, HeadersNameThePictureAndItsRegions) {
 
 // ---- the audience
 
+// ---- watching
+
+constexpr const char* kLoad = R"({"type":"load","bin":50})";
+constexpr const char* kTiles = R"({"type":"tiles","epoch":1})";
+std::string watch(bool load, bool tiles) {
+  return Json{{"type", "watch"}, {"load", load}, {"tiles", tiles}}.dump();
+}
+
+TEST_F(SessionTest, OnlyWhoWatchesIsToldWhatIsWatched) {
+  set_welcome();
+  const Viewer neither = enter(), load = enter(), both = enter();
+  session_.receive_text(load, watch(true, false));
+  session_.receive_text(both, watch(true, true));
+  for (const Viewer viewer : {neither, load, both}) texts(viewer);
+  session_.broadcast(kLoad);
+  session_.broadcast(kTiles);
+  EXPECT_TRUE(types(neither).empty());
+  EXPECT_EQ(types(load), std::vector<std::string>{"load"});
+  EXPECT_EQ(types(both), (std::vector<std::string>{"load", "tiles"}));
+  session_.receive_text(both, watch(false, false));
+  session_.broadcast(kLoad);
+  EXPECT_EQ(types(load), std::vector<std::string>{"load"});
+  EXPECT_TRUE(types(both).empty());
+}
+
+TEST_F(SessionTest, WhatIsWatchedIsNotKeptForLaterPages) {
+  set_welcome();
+  session_.receive_text(enter(), watch(true, true));
+  session_.broadcast(kLoad);
+  session_.broadcast(kTiles);
+  const Viewer later = enter();
+  EXPECT_EQ(types(later), std::vector<std::string>{"welcome"});
+  session_.receive_text(later, watch(true, true));
+  EXPECT_TRUE(types(later).empty());
+}
+
+TEST_F(SessionTest, ASlowWatcherGetsTheNewestLoadAlone) {
+  set_welcome();
+  const Viewer viewer = enter();
+  session_.receive_text(viewer, watch(true, false));
+  texts(viewer);
+  for (int i = 0; i < 10'000; ++i)
+    session_.broadcast(R"({"type":"load","bin":)" + std::to_string(i) + "}");
+  const auto said = texts(viewer);
+  ASSERT_EQ(said.size(), 1U);
+  EXPECT_EQ(said[0].at("bin"), 9999);
+}
+
+TEST_F(SessionTest, AWatcherNeedNotDriveAndMayWatchBeforeItIsWelcome) {
+  const Viewer driver = enter(), viewer = enter();
+  session_.receive_text(viewer, watch(true, false));
+  session_.broadcast(kLoad);
+  EXPECT_EQ(types(viewer), std::vector<std::string>{"loading"});
+  set_welcome();
+  session_.broadcast(kLoad);
+  EXPECT_EQ(types(viewer), (std::vector<std::string>{"welcome", "load"}));
+  for (const std::string& type : types(driver)) EXPECT_NE(type, "load");
+}
+
+TEST_F(SessionTest, TheAudienceWatchesWhatAnyOfItsPagesDoes) {
+  set_welcome();
+  const Viewer first = enter(), second = enter();
+  EXPECT_EQ(events<AudienceChange>().at(0).watch, Watch{});
+  session_.receive_text(first, watch(true, false));
+  EXPECT_EQ(events<AudienceChange>().at(0).watch, (Watch{true, false}));
+  session_.receive_text(second, watch(true, true));
+  EXPECT_EQ(events<AudienceChange>().at(0).watch, (Watch{true, true}));
+  session_.receive_text(first, watch(false, false));
+  EXPECT_TRUE(events<AudienceChange>().empty()) << "the other watches the same";
+  session_.gone(second);
+  EXPECT_EQ(events<AudienceChange>().at(0).watch, Watch{});
+  session_.receive_text(first, watch(false, true));
+  events<AudienceChange>();
+  session_.close(first, Session::kPolicy, "test");
+  EXPECT_EQ(events<AudienceChange>().at(0).watch, Watch{});
+}
+
 TEST_F(SessionTest, TheAudienceIsReadyWhileOnePageHasRoom) {
   const Viewer viewer = enter();
   auto changes = events<AudienceChange>();
