@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <array>
 #include <chrono>
+#include <cmath>
 #include <cstdint>
 #include <vector>
 
@@ -51,7 +52,7 @@ class BusyLog {
       // Intervals that ended after `now` may have pushed the oldest bins out.
       const Clock::duration busy = n < newest_ - kBins ? Clock::duration(0) : at(n);
       const double share = std::chrono::duration<double>(busy).count() / full;
-      shares.push_back(static_cast<std::uint8_t>(255 * std::min(share, 1.0) + 0.5));
+      shares.push_back(static_cast<std::uint8_t>(std::lround(255 * std::min(share, 1.0))));
     }
     return shares;
   }

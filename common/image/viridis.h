@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 
@@ -29,7 +30,7 @@ inline std::array<std::uint8_t, 3> viridis(double value) {
   std::array<std::uint8_t, 3> rgb{};
   for (std::size_t c = 0; c < 3; ++c) {
     const double mixed = (1 - part) * kColors[lower][c] + part * kColors[lower + 1][c];
-    rgb[c] = static_cast<std::uint8_t>(mixed + 0.5);
+    rgb[c] = static_cast<std::uint8_t>(std::lround(mixed));
   }
   return rgb;
 }

@@ -76,12 +76,13 @@ TEST(CommandLine, DefaultsAreThePromisedOnes) {
 
 TEST(CommandLine, EveryOptionOfRenderIsRead) {
   const Options o = options(
-      {"render",        "--size",      "800x600",  "--workers",  "3",          "--threads=4",
-       "--compositors", "2",           "--tile",   "32",         "--schedule", "rows",
-       "--sampling",    "every-pixel", "--error",  "1.5",        "--samples",  "16",
-       "--time",        "2.5",         "--step",   "0.25",       "--filter",   "bicubic",
-       "--orbit",       "12,90",       "--data",   "replicated", "--report",   "r.json",
-       "--cost-image",  "c%d.png",     "--log-level",   "debug",       "--output", "f%03d.exr",  "s.json"});
+      {"render",        "--size",      "800x600",     "--workers",  "3",          "--threads=4",
+       "--compositors", "2",           "--tile",      "32",         "--schedule", "rows",
+       "--sampling",    "every-pixel", "--error",     "1.5",        "--samples",  "16",
+       "--time",        "2.5",         "--step",      "0.25",       "--filter",   "bicubic",
+       "--orbit",       "12,90",       "--data",      "replicated", "--report",   "r.json",
+       "--cost-image",  "c%d.png",     "--log-level", "debug",      "--output",   "f%03d.exr",
+       "s.json"});
   EXPECT_EQ(o.input, "s.json");
   EXPECT_EQ(o.output, "f%03d.exr");
   EXPECT_EQ(o.size, (ImageSize{800, 600}));
