@@ -2,12 +2,14 @@
 #include "master/cluster.h"
 
 #include <algorithm>
+#include <numeric>
 #include <set>
 #include <utility>
 
 #include "common/scene/scene_file.h"
 #include "common/transport/heartbeat.h"
 #include "common/transport/shared_memory.h"
+#include "master/tile_cut.h"
 
 namespace goldthread {
 namespace {
@@ -103,7 +105,7 @@ void Cluster::begin_session() {
                                        static_cast<std::uint32_t>(topology_.compositors)});
     ++places;  // the spare tile
   }
-  scheduler_ = Scheduler(capacity);
+  scheduler_ = Scheduler(capacity, options_.strategy);
 }
 
 VolumeInfo Cluster::load_volume(const SceneVolume& volume,
@@ -154,9 +156,27 @@ void Cluster::on(Rank, SceneCommitted message) {
   visible_points_ = std::move(message.visible_points);
 }
 
+int Cluster::threads() const {
+  return std::accumulate(ranks_.begin(), ranks_.end(), 0, [](int sum, const RankState& rank) {
+    return rank.role == Role::kWorker && !rank.lost ? sum + rank.threads : sum;
+  });
+}
+
+TileGrid Cluster::cut(const ViewRequest& request) const {
+  if (!request.split) return request.grid;
+  const TileGrid& last = view_.grid;
+  const bool alike = last.image == request.grid.image && last.tile == request.grid.tile;
+  // A picture that is cast at once has but one step.
+  const Step step = request.update == Update::kAll ? costs_.last_step() : Step{1};
+  return split_dear(alike ? last : request.grid, costs_, step, threads());
+}
+
 void Cluster::begin_view(const Scene& scene, const ViewRequest& request) {
   costs_.fit(request.grid);
-  scheduler_.begin_view(request.grid, costs_);
+  costs_.reproject(view_.camera, *scene.camera, visible_points_);
+  const TileGrid grid = cut(request);
+  costs_.fit(grid);
+  scheduler_.begin_view(grid, costs_);
   view_ = {};
   // What was told of the old view and not yet heard would be taken for the new one's.
   std::erase_if(events_, [](const ClusterEvent& event) {
@@ -164,21 +184,24 @@ void Cluster::begin_view(const Scene& scene, const ViewRequest& request) {
   });
   ++epoch_.value;
   view_.epoch = epoch_;
-  view_.grid = request.grid;
-  view_.tiles.resize(request.grid.count());
+  view_.camera = *scene.camera;
+  view_.grid = grid;
+  view_.tiles.resize(grid.count());
+  view_.predicted = !costs_.empty();
+  view_.busy_seconds.resize(static_cast<std::size_t>(topology_.workers));
   std::fill(bands_.begin(), bands_.end(), kNoStep);
   view_.begin = Clock::now();
   const BeginView message{view_.epoch,
                           revision_,
                           *scene.camera,
-                          request.grid,
+                          grid,
                           request.refinement,
                           request.update,
                           request.frame,
                           scene.image.background,
                           scene.image.color_space};
   send_to_workers(message);
-  for (int w = 0; w < topology_.workers; ++w) supply(w);
+  supply_all();
   for (int c = 0; c < topology_.compositors; ++c) {
     post_.to_compositor(topology_.compositor(c), message);
   }
@@ -186,16 +209,31 @@ void Cluster::begin_view(const Scene& scene, const ViewRequest& request) {
 
 void Cluster::refine_further() {
   scheduler_.open_step(costs_);
-  for (int w = 0; w < topology_.workers; ++w) supply(w);
+  supply_all();
 }
 
 void Cluster::cancel_view() { scheduler_.cancel(); }
 
 void Cluster::supply(int worker) {
-  while (const auto quantum = scheduler_.next(worker)) {
-    post_.to_worker(topology_.worker(worker),
-                    RenderTile{view_.epoch, quantum->tile, quantum->from, quantum->to});
+  while (give(worker)) {
   }
+}
+
+void Cluster::supply_all() {
+  for (bool any = true; any;) {
+    any = false;
+    for (int w = 0; w < topology_.workers; ++w) any = give(w) || any;
+  }
+}
+
+bool Cluster::give(int worker) {
+  const auto quantum = scheduler_.next(worker);
+  if (!quantum) return false;
+  RenderTiles message{{{view_.epoch, quantum->tile, quantum->from, quantum->to}}};
+  while (const auto tile = scheduler_.join(worker))
+    message.tiles.push_back({view_.epoch, *tile, quantum->from, quantum->to});
+  post_.to_worker(topology_.worker(worker), std::move(message));
+  return true;
 }
 
 void Cluster::on(Rank, ViewTaken message) {
@@ -211,15 +249,17 @@ void Cluster::on(Rank from, TileDone message) {
       scheduler_.done(worker, message.tile, message.to, message.quality.squared_error);
   if (finished == Finished::kNot) return;
   supply(worker);
+  ViewState::Tile& tile = view_.tiles[message.tile.value];
+  tile.predicted_seconds += 1e-6 * costs_.predict_us(message.tile, message.to);
   costs_.record(message.tile, message.to, std::chrono::microseconds(message.cost_us));
   // Rays are those of the picture, whoever cast them.
   if (finished == Finished::kFirst) {
     view_.rays += message.rays;
     view_.samples += message.samples;
   }
-  ViewState::Tile& tile = view_.tiles[message.tile.value];
   tile.worker = from;
   tile.seconds += 1e-6 * message.cost_us;
+  view_.busy_seconds[static_cast<std::size_t>(worker)] += 1e-6 * message.cost_us;
   tile.quality = message.quality;
   ranks_[static_cast<std::size_t>(from.value)].tiles += 1;
   if (scheduler_.finished()) finish_step();
@@ -289,7 +329,7 @@ void Cluster::lose(Rank rank) {
   const Step cast = view_.cast();
   const bool view_lost = view_.held < cast;
   if (view_lost) scheduler_.cancel();
-  for (int w = 0; w < topology_.workers; ++w) supply(w);
+  supply_all();
   events_.push_back(WorkerLost{rank, view_lost});
 }
 

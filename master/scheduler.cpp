@@ -7,7 +7,7 @@
 
 namespace goldthread {
 
-Scheduler::Scheduler(const std::vector<int>& capacity) {
+Scheduler::Scheduler(const std::vector<int>& capacity, Strategy strategy) : strategy_(strategy) {
   for (const int places : capacity) {
     Worker worker;
     worker.capacity = places;
@@ -18,8 +18,19 @@ Scheduler::Scheduler(const std::vector<int>& capacity) {
 void Scheduler::begin_view(const TileGrid& grid, const CostHistory& costs) {
   for (Worker& worker : workers_) worker.held.clear();
   tiles_.assign(grid.count(), {});
+  share_out();
   step_ = Step{1};
   queue(costs);
+}
+
+void Scheduler::share_out() {
+  if (strategy_.share == Share::kOnDemand) return;
+  std::vector<int> alive;
+  for (std::size_t w = 0; w < workers_.size(); ++w)
+    if (!workers_[w].lost) alive.push_back(static_cast<int>(w));
+  for (std::size_t i = 0; i < tiles_.size() && !alive.empty(); ++i)
+    tiles_[i].owner = alive[strategy_.share == Share::kContiguous ? i * alive.size() / tiles_.size()
+                                                                  : i % alive.size()];
 }
 
 void Scheduler::open_step(const CostHistory& costs) {
@@ -43,12 +54,15 @@ void Scheduler::queue(const CostHistory& costs) {
   }
   unowned_.clear();
   std::vector<double> urgency(tiles_.size());
+  double total_us = 0;
   for (std::uint32_t i = 0; i < tiles_.size(); ++i) {
     Tile& tile = tiles_[i];
     tile.done_by = -1;
     tile.again = false;
     tile.cost_us = costs.predict_us({i}, step_);
     tile.all_cost_us = costs.predict_all_us({i}, step_);
+    total_us += tile.cost_us;
+    if (strategy_.order == Order::kScreen) continue;  // all alike: they keep their order
     // Errors are sums over the tile: its area is in them.
     urgency[i] = step_ == Step{1} ? tile.cost_us : tile.squared_error / std::max(tile.cost_us, 1.0);
   }
@@ -66,20 +80,29 @@ void Scheduler::queue(const CostHistory& costs) {
     owner.waiting_us += tiles_[i].cost_us;
   }
   open_ = tiles_.size();
+  int threads = 0;
+  for (const Worker& worker : workers_)
+    if (!worker.lost) threads += std::max(1, worker.capacity - 1);
+  joined_us_ = std::min(kJoinedUs, kJoinedShare * total_us / std::max(1, threads));
+}
+
+std::deque<TileId>& Scheduler::waiting_for(Worker& worker) {
+  return worker.waiting.empty() ? unowned_ : worker.waiting;
+}
+
+TileId Scheduler::pop(Worker& worker) {
+  auto& waiting = waiting_for(worker);
+  const TileId tile = waiting.front();
+  if (&waiting == &worker.waiting) worker.waiting_us -= tiles_[tile.value].cost_us;
+  waiting.pop_front();
+  return tile;
 }
 
 std::optional<TileId> Scheduler::take(int worker) {
-  Worker& own = workers_[static_cast<std::size_t>(worker)];
-  if (!own.waiting.empty()) {
-    const TileId tile = own.waiting.front();
-    own.waiting.pop_front();
-    own.waiting_us -= tiles_[tile.value].cost_us;
-    return tile;
-  }
-  if (unowned_.empty()) return take_over(worker);
-  const TileId tile = unowned_.front();
-  unowned_.pop_front();
-  return tile;
+  Worker& taker = workers_[static_cast<std::size_t>(worker)];
+  if (!waiting_for(taker).empty()) return pop(taker);
+  if (strategy_.share != Share::kOnDemand) return {};
+  return take_over(worker);
 }
 
 std::optional<TileId> Scheduler::take_over(int worker) {
@@ -102,16 +125,34 @@ std::optional<Quantum> Scheduler::next(int worker) {
   if (taker.lost || std::cmp_greater_equal(taker.held.size(), taker.capacity)) return {};
   const auto tile = take(worker);
   if (!tile) return {};
-  taker.held.push_back(*tile);
+  taker.held.push_back({*tile});
+  taker.newest_us = tiles_[tile->value].cost_us;
   tiles_[tile->value].owner = worker;
   return Quantum{*tile, Step{static_cast<std::uint16_t>(step_.value - 1)}, step_};
 }
 
+std::optional<TileId> Scheduler::join(int worker) {
+  Worker& taker = workers_.at(static_cast<std::size_t>(worker));
+  if (joined_us_ <= 0 || taker.held.empty() || taker.held.back().size() >= kMostJoined ||
+      waiting_for(taker).empty())
+    return {};
+  const double with_it = taker.newest_us + tiles_[waiting_for(taker).front().value].cost_us;
+  if (with_it > joined_us_) return {};
+  const TileId tile = pop(taker);
+  taker.newest_us = with_it;
+  taker.held.back().push_back(tile);
+  tiles_[tile.value].owner = worker;
+  return tile;
+}
+
 Finished Scheduler::done(int worker, TileId tile, Step to, double squared_error) {
   auto& held = workers_.at(static_cast<std::size_t>(worker)).held;
-  const auto found = std::find(held.begin(), held.end(), tile);
-  if (found == held.end() || to != step_) return Finished::kNot;
-  held.erase(found);
+  const auto quantum = std::find_if(held.begin(), held.end(), [&](const auto& tiles) {
+    return std::find(tiles.begin(), tiles.end(), tile) != tiles.end();
+  });
+  if (quantum == held.end() || to != step_) return Finished::kNot;
+  std::erase(*quantum, tile);
+  if (quantum->empty()) held.erase(quantum);
   Tile& finished = tiles_[tile.value];
   finished.squared_error = squared_error;
   finished.done_by = worker;
@@ -139,7 +180,8 @@ void Scheduler::worker_lost(int worker) {
   const auto again = take_back(worker);
   unowned_.insert(unowned_.begin(), again.begin(), again.end());
   unowned_.insert(unowned_.begin(), lost.waiting.begin(), lost.waiting.end());
-  unowned_.insert(unowned_.begin(), lost.held.begin(), lost.held.end());
+  for (auto quantum = lost.held.rbegin(); quantum != lost.held.rend(); ++quantum)
+    unowned_.insert(unowned_.begin(), quantum->begin(), quantum->end());
   lost.held.clear();
   lost.waiting.clear();
   lost.waiting_us = 0;

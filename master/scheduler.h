@@ -5,6 +5,7 @@
 // step of a view descending predicted cost (longest first), after that descending (estimated error
 // × area) / predicted cost. A tile stays with the worker that holds its state; a worker with
 // nothing left takes over another's where casting the earlier steps again is quicker than waiting.
+// Cheap tiles go out together, so that what a quantum costs beside its rays does not count.
 // What a lost worker has done of the open step is done again: its samples may have gone with it.
 // Pure: no clock, no transport. Invariant: each (tile, step) of a view is done for the first time
 // once.
@@ -34,10 +35,33 @@ enum class Finished : std::uint8_t {
   kFirst
 };
 
+/// The order in which tiles go out; VOL2 compares the two.
+enum class Order : std::uint8_t {
+  kUrgent,  ///< descending predicted cost at the first step, then error per cost
+  kScreen   ///< as they are numbered, from the top left
+};
+/// Who gets a tile.
+enum class Share : std::uint8_t {
+  kOnDemand,    ///< whoever has room
+  kContiguous,  ///< each worker as many tiles, one after the other; no one takes over
+  kInterleaved  ///< likewise, but worker w of n each n-th
+};
+/// What benches compare; jobs use the default.
+struct Strategy {
+  Order order = Order::kUrgent;
+  Share share = Share::kOnDemand;
+};
+
+/// Cheap tiles are joined until the quantum is predicted to take so long, or this share of what a
+/// thread has to do in the step, whatever is less: then the last one to end is hardly late.
+constexpr double kJoinedUs = 300;
+constexpr double kJoinedShare = 1.0 / 64;
+constexpr std::size_t kMostJoined = 16;
+
 class Scheduler {
  public:
   /// `capacity[w]`: how many quanta worker w may hold at once, its spare one included.
-  explicit Scheduler(const std::vector<int>& capacity);
+  explicit Scheduler(const std::vector<int>& capacity, Strategy strategy = {});
 
   /// Forgets the old view and everything in flight; the first step is open.
   void begin_view(const TileGrid& grid, const CostHistory& costs);
@@ -48,6 +72,9 @@ class Scheduler {
 
   /// The next quantum for `worker`, if it has room and there is work.
   std::optional<Quantum> next(int worker);
+  /// Directly after next(): another tile for the same quantum, while that remains small. It has its
+  /// own done(); there is room for the next quantum when all of them are.
+  std::optional<TileId> join(int worker);
   /// `worker` has finished a quantum; anything it does not hold is ignored. `squared_error` is the
   /// tile's, summed over its pixels.
   Finished done(int worker, TileId tile, Step to, double squared_error);
@@ -65,8 +92,9 @@ class Scheduler {
   struct Worker {
     int capacity = 0;
     bool lost = false;
-    std::vector<TileId> held;
-    std::deque<TileId> waiting;  ///< those whose state it holds, the most urgent first
+    std::vector<std::vector<TileId>> held;  ///< quanta, the newest last
+    double newest_us = 0;                   ///< predicted of that one
+    std::deque<TileId> waiting;             ///< those whose state it holds, the most urgent first
     double waiting_us = 0;
   };
   struct Tile {
@@ -78,14 +106,19 @@ class Scheduler {
     double all_cost_us = 0;  ///< of this and all earlier steps: what a newcomer would spend
   };
   void queue(const CostHistory& costs);
+  void share_out();
+  std::deque<TileId>& waiting_for(Worker& worker);
+  TileId pop(Worker& worker);
   std::optional<TileId> take(int worker);
   std::optional<TileId> take_over(int worker);
   /// What `worker` has done of the open step, which is not done any more.
   std::vector<TileId> take_back(int worker);
 
+  Strategy strategy_;
   std::vector<Worker> workers_;
   std::vector<Tile> tiles_;
   std::deque<TileId> unowned_;  ///< in order
+  double joined_us_ = 0;        ///< that joined tiles may take
   Step step_ = kNoStep;
   std::size_t open_ = 0;
 };

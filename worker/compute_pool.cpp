@@ -5,6 +5,7 @@
 
 #include <utility>
 
+#include "common/base/thread_clock.h"
 #include "worker/refine_tile.h"
 
 namespace goldthread {
@@ -100,12 +101,13 @@ void ComputePool::note_failure() {
 
 void ComputePool::cast(const CastView& view, const RenderTile& quantum,
                        std::unique_ptr<TileRefinement> tile, const std::stop_token& stop) {
-  const auto begin = std::chrono::steady_clock::now();
+  // Not by the clock on the wall: a thread that was made to wait has had no dear tile.
+  const auto begin = ThreadClock::now();
   auto result = refine_tile(view, quantum, std::move(tile), [&] {
     return epoch_.load(std::memory_order_relaxed) != quantum.epoch.value || stop.stop_requested();
   });
-  const auto cost = std::chrono::steady_clock::now() - begin;
-  busy_ns_ += std::chrono::nanoseconds(cost).count();
+  const auto cost = ThreadClock::now() - begin;
+  busy_ns_ += cost.count();
   if (!result) return;
   const auto cost_us = std::chrono::duration_cast<std::chrono::microseconds>(cost).count();
   {

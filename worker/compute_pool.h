@@ -43,7 +43,7 @@ class ComputePool {
   std::vector<Done> take_done();
   /// The view whose first quantum a thread has begun since the last call.
   std::optional<Epoch> take_begun();
-  /// What the threads have spent on quanta, finished or abandoned.
+  /// Processor time that the threads have spent on quanta, finished or abandoned.
   std::chrono::duration<double> busy() const;
 
  private:

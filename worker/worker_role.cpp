@@ -128,11 +128,13 @@ void WorkerRole::on(const BeginView& message) {
                message.frame % parts_of(message.update)}));
 }
 
-void WorkerRole::on(const RenderTile& message) {
-  if (!view_ || message.epoch != view_->epoch) return;
-  require(message.tile.value < view_->grid.count() && is_step(message.from, message.to),
-          "was given a tile or step that its view does not have");
-  pool_->push(message);
+void WorkerRole::on(const RenderTiles& message) {
+  for (const RenderTile& tile : message.tiles) {
+    if (!view_ || tile.epoch != view_->epoch) continue;
+    require(tile.tile.value < view_->grid.count() && is_step(tile.from, tile.to),
+            "was given a tile or step that its view does not have");
+    pool_->push(tile);
+  }
 }
 
 void WorkerRole::send_done() {

@@ -33,7 +33,7 @@ class WorkerRole {
   void on(MapVolume message);
   void on(const CommitScene& message);
   void on(const BeginView& message);
-  void on(const RenderTile& message);
+  void on(const RenderTiles& message);
   void on(const ReportCounters& message);
   void on(const Stop& message);
   /// Throws FatalError unless what the master sent makes sense.
