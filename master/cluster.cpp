@@ -162,21 +162,22 @@ int Cluster::threads() const {
   });
 }
 
-TileGrid Cluster::cut(const ViewRequest& request) const {
+TileGrid Cluster::cut(const ViewRequest& request, Step last) const {
   if (!request.split) return request.grid;
-  const TileGrid& last = view_.grid;
-  const bool alike = last.image == request.grid.image && last.tile == request.grid.tile;
-  // A picture that is cast at once has but one step.
-  const Step step = request.update == Update::kAll ? costs_.last_step() : Step{1};
-  return split_dear(alike ? last : request.grid, costs_, step, threads());
+  const TileGrid& before = view_.grid;
+  const bool alike = before.image == request.grid.image && before.tile == request.grid.tile;
+  return split_dear(alike ? before : request.grid, costs_, last, threads());
 }
 
 void Cluster::begin_view(const Scene& scene, const ViewRequest& request) {
   costs_.fit(request.grid);
   costs_.reproject(view_.camera, *scene.camera, visible_points_);
-  const TileGrid grid = cut(request);
+  // As far as the last view came; what is not refined has but one step.
+  const bool foreseen = request.update == Update::kAll && !costs_.empty();
+  const Step last = foreseen ? std::max(Step{1}, view_.cast()) : Step{1};
+  const TileGrid grid = cut(request, last);
   costs_.fit(grid);
-  scheduler_.begin_view(grid, costs_);
+  scheduler_.begin_view(grid, costs_, last);
   view_ = {};
   // What was told of the old view and not yet heard would be taken for the new one's.
   std::erase_if(events_, [](const ClusterEvent& event) {

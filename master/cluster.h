@@ -171,7 +171,7 @@ class Cluster {
     events_.push_back(std::move(message));
   }
   void begin_session();
-  TileGrid cut(const ViewRequest& request) const;
+  TileGrid cut(const ViewRequest& request, Step last) const;
   void send_to_workers(const ToWorker& message);
   void check_interrupted() const;
   void check_liveness();

@@ -27,7 +27,7 @@ class Replay {
   }
 
   Replayed run() {
-    scheduler_.begin_view(frame_.grid, costs_);
+    scheduler_.begin_view(frame_.grid, costs_, costs_.empty() ? Step{1} : costs_.last_step());
     for (const CastFrame::Step& step : frame_.steps) {
       run_step(step);
       if (&step != &frame_.steps.back()) scheduler_.open_step(costs_);
