@@ -252,7 +252,9 @@ void Cluster::on(Rank from, TileDone message) {
   supply(worker);
   ViewState::Tile& tile = view_.tiles[message.tile.value];
   tile.predicted_seconds += 1e-6 * costs_.predict_us(message.tile, message.to);
-  costs_.record(message.tile, message.to, std::chrono::microseconds(message.cost_us));
+  // A newcomer has cast the earlier steps again: that is not what this one costs.
+  if (message.to == Step{1} || tile.worker == from)
+    costs_.record(message.tile, message.to, std::chrono::microseconds(message.cost_us));
   // Rays are those of the picture, whoever cast them.
   if (finished == Finished::kFirst) {
     view_.rays += message.rays;

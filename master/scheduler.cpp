@@ -24,7 +24,7 @@ void Scheduler::begin_view(const TileGrid& grid, const CostHistory& costs, Step 
   last_ = last;
   if (strategy_.share != Share::kOnDemand)
     deal_alike();
-  else if (last > step_)
+  else if (strategy_.order == Order::kUrgent && last > step_)
     deal_by_cost(costs);
   queue(costs);
 }
@@ -109,10 +109,11 @@ void Scheduler::queue(const CostHistory& costs) {
     Tile& tile = tiles_[i];
     tile.done_by = -1;
     tile.again = false;
+    tile.cost_us = tile.all_cost_us = 0;
+    if (strategy_.order == Order::kScreen) continue;  // all alike: they keep their order
     tile.cost_us = costs.predict_us({i}, step_);
     tile.all_cost_us = costs.predict_all_us({i}, std::max(step_, last_));
     total_us += tile.cost_us;
-    if (strategy_.order == Order::kScreen) continue;  // all alike: they keep their order
     // Errors are sums over the tile: its area is in them.
     urgency[i] = step_ == Step{1} ? tile.cost_us : tile.squared_error / std::max(tile.cost_us, 1.0);
   }
@@ -131,6 +132,8 @@ void Scheduler::queue(const CostHistory& costs) {
 bool Scheduler::is_due(const Worker& taker, TileId tile, double waiting_us, int threads) const {
   if (std::cmp_less(taker.held.size(), taker.threads())) return true;
   const double cost_us = tiles_[tile.value].cost_us;
+  // Nobody would take over what has so much more to it than this step.
+  if (tiles_[tile.value].all_cost_us > kSpareRounds * cost_us) return true;
   return cost_us <= joined_us_ || waiting_us >= kSpareRounds * threads * cost_us;
 }
 

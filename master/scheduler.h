@@ -39,7 +39,7 @@ enum class Finished : std::uint8_t {
 /// The order in which tiles go out; VOL2 compares the two.
 enum class Order : std::uint8_t {
   kUrgent,  ///< descending predicted cost at the first step, then error per cost
-  kScreen   ///< as they are numbered, from the top left
+  kScreen   ///< as they are numbered, from the top left; nothing is asked of costs
 };
 /// Who gets a tile.
 enum class Share : std::uint8_t {
@@ -60,7 +60,8 @@ constexpr double kJoinedShare = 1.0 / 64;
 constexpr std::size_t kMostJoined = 16;
 /// A spare is held back from a worker whose threads are busy once what waits beside it would keep
 /// the threads that it waits for busy for less than this many times as long: at the end of a step
-/// it would wait there while others are idle. What is no dearer than joined tiles never is.
+/// it would wait there while others are idle. What is no dearer than joined tiles never is, nor what
+/// would take another worker more than this many times as long.
 constexpr double kSpareRounds = 2;
 
 class Scheduler {

@@ -18,7 +18,7 @@ using Json = nlohmann::ordered_json;
 using Figure = std::map<std::pair<bool, int>, std::vector<const RateRow*>>;
 
 /// Okabe and Ito's colours, which colour-blind readers can tell apart.
-constexpr std::array kColors = {"#999999", "#E69F00", "#56B4E9", "#F0E442",
+constexpr std::array kColors = {"#999999", "#E69F00", "#56B4E9", "#0072B2",
                                 "#009E73", "#CC79A7", "#D55E00", "#000000"};
 
 std::string percent(double share) { return fmt::format("{:.1f} %", 100 * share); }
@@ -71,9 +71,9 @@ Plot plot_of(const BalanceReport& report, const std::pair<bool, int>& figure,
   const std::string name =
       figure.first ? fmt::format("figure-9-{}-workers", figure.second) : "figure-9-measured";
   return {name, std::string(kFrame) + titled("Frame rate and distance", about(figure)) +
-                    "set key below Left reverse maxrows 4\nset logscale x 2\n" +
-                    "set xlabel 'distance of the camera, in that of the scene'\n"
-                    "set ylabel 'frames a second'\nset yrange [0:*]\n" +
+                    "set key below Left reverse maxrows 4\nset logscale x 2\nset logscale y\n" +
+                    "set xlabel 'distance of the camera (1: that of the scene)'\n"
+                    "set ylabel 'frames a second'\n" +
                     x_range(curves) + data_blocks(curves) +
                     on_both_terminals(name, plot_command(curves))};
 }

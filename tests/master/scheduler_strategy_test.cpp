@@ -165,6 +165,17 @@ TEST(SchedulerStrategy, InScreenOrderCostDoesNotMatter) {
   }
 }
 
+TEST(SchedulerStrategy, InScreenOrderNothingIsJoinedAndNoSpareHeldBack) {
+  const TileGrid grid = TileGrid::squares({16 * 100, 16 * 20}, 16);
+  Scheduler scheduler({2}, {Order::kScreen});
+  scheduler.begin_view(grid, history(grid, std::vector(2000, 10)));
+  EXPECT_EQ(quantum(scheduler, 0), (Tiles{0}));
+  Scheduler few({2, 2}, {Order::kScreen});
+  few.begin_view(row_of(2), history(row_of(2), {5000, 5000}));
+  EXPECT_EQ(quantum(few, 0), (Tiles{0}));
+  EXPECT_EQ(quantum(few, 0), (Tiles{1}));
+}
+
 TEST(SchedulerStrategy, ShareAlikeIsByNumberOfTilesAndNobodyTakesOver) {
   const TileGrid grid = row_of(10);
   const CostHistory costs = history(grid, {1, 1, 1, 1, 1, 1, 1, 1, 1, 100000}, 3);

@@ -261,6 +261,20 @@ TEST(Scheduler, HoldsASpareBackAtTheEndOfAStep) {
   EXPECT_EQ(taken_by(scheduler, 0), Tiles{}) << "it has its spare";
 }
 
+TEST(Scheduler, HoldsNoSpareBackThatNobodyWouldTakeOver) {
+  // Another worker would have to cast the first step again: a trifle, or five times the second.
+  const TileGrid grid = row_of(2);
+  for (const int first_us : {100, 5000}) {
+    CostHistory costs = history(grid, {first_us, first_us});
+    for (std::uint32_t i = 0; i < 2; ++i)
+      costs.record({i}, kSecond, std::chrono::microseconds(1000));
+    Scheduler scheduler = begun({2, 2}, grid, costs);
+    worked_off_by(scheduler, 0);
+    scheduler.open_step(costs);
+    EXPECT_EQ(taken_by(scheduler, 0).size(), first_us == 100 ? 1u : 2u);
+  }
+}
+
 TEST(Scheduler, DealsTilesByWhatAllTheirStepsWillTake) {
   // In the first step all are alike; in all of them the first four take as long as all others.
   const TileGrid grid = row_of(28);
