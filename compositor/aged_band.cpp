@@ -17,14 +17,13 @@ constexpr double kFarAway = 1e3;
 
 AgedBand::AgedBand(const BeginView& view, Band band)
     : grid_(view.grid),
-      band_(band),
+      first_(band_tiles(grid_, band).first),
       update_(view.update),
       scene_revision_(view.scene_revision),
       rect_(band_rect(grid_, band)) {
-  const auto columns = static_cast<std::uint32_t>(grid_.columns());
-  for (auto i = static_cast<std::uint32_t>(band.first_row) * columns;
-       i < static_cast<std::uint32_t>(band.last_row) * columns; ++i)
-    tiles_.emplace_back(grid_.rect({i}), update_);
+  const auto rects = grid_.rects();
+  for (std::uint32_t i = first_; i < band_tiles(grid_, band).last; ++i)
+    tiles_.emplace_back(rects[i], update_);
   placed_.resize(tiles_.size());
 }
 
@@ -35,12 +34,11 @@ void AgedBand::begin_view(Epoch epoch, std::uint32_t frame) {
 }
 
 bool AgedBand::place(const Samples& message) {
-  const auto first = static_cast<std::uint32_t>(band_.first_row * grid_.columns());
-  if (message.tile.value < first || message.tile.value - first >= tiles_.size() ||
+  if (message.tile.value < first_ || message.tile.value - first_ >= tiles_.size() ||
       message.packed.size() / sizeof(Sample) != message.count ||
       message.packed.size() % sizeof(Sample) != 0)
     return false;
-  const std::size_t tile = message.tile.value - first;
+  const std::size_t tile = message.tile.value - first_;
   std::vector<Sample> samples(message.count);
   if (!samples.empty()) std::memcpy(samples.data(), message.packed.data(), message.packed.size());
   if (!tiles_[tile].put(message.epoch, part_, samples)) return false;

@@ -34,7 +34,7 @@ class AgedBand {
 
  private:
   TileGrid grid_;
-  Band band_;
+  std::uint32_t first_;  ///< of its tiles
   Update update_;
   std::uint32_t scene_revision_;
   PixelRect rect_;

@@ -58,11 +58,13 @@ void TileSamples::note(Step from, Step to) {
 }
 
 SampleArray::SampleArray(const TileGrid& grid, Band band)
-    : grid_(grid), band_(band), rect_(band_rect(grid, band)), at_step_(kLastStep.value + 1U) {
-  const auto columns = static_cast<std::uint32_t>(grid.columns());
-  const auto first = static_cast<std::uint32_t>(band.first_row) * columns;
-  const auto last = static_cast<std::uint32_t>(band.last_row) * columns;
-  for (std::uint32_t i = first; i < last; ++i) tiles_.emplace_back(grid.rect({i}));
+    : grid_(grid),
+      first_(band_tiles(grid, band).first),
+      rect_(band_rect(grid, band)),
+      at_step_(kLastStep.value + 1U) {
+  const auto rects = grid.rects();
+  for (std::uint32_t i = first_; i < band_tiles(grid, band).last; ++i)
+    tiles_.emplace_back(rects[i]);
   at_step_[0] = tiles_.size();
 }
 
@@ -74,9 +76,8 @@ void SampleArray::restart() {
 }
 
 bool SampleArray::place(const Samples& message) {
-  const auto first = static_cast<std::uint32_t>(band_.first_row * grid_.columns());
-  if (message.tile.value < first || message.tile.value - first >= tiles_.size()) return false;
-  TileSamples& held = tiles_[message.tile.value - first];
+  if (message.tile.value < first_ || message.tile.value - first_ >= tiles_.size()) return false;
+  TileSamples& held = tiles_[message.tile.value - first_];
   const Step before = held.step();
   if (!held.place(message)) return false;
   --at_step_[before.value];

@@ -66,7 +66,7 @@ class SampleArray {
 
  private:
   TileGrid grid_;
-  Band band_;
+  std::uint32_t first_;  ///< of its tiles
   PixelRect rect_;
   std::vector<TileSamples> tiles_;
   std::vector<std::size_t> at_step_;  ///< how many tiles have taken so many steps and no more

@@ -2,6 +2,7 @@
 #include "master/cluster.h"
 
 #include <algorithm>
+#include <numeric>
 #include <set>
 #include <utility>
 
@@ -10,6 +11,7 @@
 #include "common/transport/counters.h"
 #include "common/transport/heartbeat.h"
 #include "common/transport/shared_memory.h"
+#include "master/tile_cut.h"
 
 namespace goldthread {
 namespace {
@@ -122,7 +124,7 @@ void Cluster::begin_session() {
                            static_cast<std::uint32_t>(slabs_), static_cast<std::uint32_t>(places)});
     ++places;  // the spare tile
   }
-  scheduler_ = Scheduler(capacity);
+  scheduler_ = Scheduler(capacity, options_.strategy);
 }
 
 VolumeInfo Cluster::load_volume(const SceneVolume& volume,
@@ -213,9 +215,28 @@ void Cluster::on(Rank from, SceneCommitted message) {
     visible_points_.insert(visible_points_.end(), points.begin(), points.end());
 }
 
+int Cluster::threads() const {
+  return std::accumulate(ranks_.begin(), ranks_.end(), 0, [](int sum, const RankState& rank) {
+    return rank.role == Role::kWorker && !rank.lost ? sum + rank.threads : sum;
+  });
+}
+
+TileGrid Cluster::cut(const ViewRequest& request, Step last) const {
+  if (!request.split) return request.grid;
+  const TileGrid& before = view_.grid;
+  const bool alike = before.image == request.grid.image && before.tile == request.grid.tile;
+  return split_dear(alike ? before : request.grid, costs_, last, threads());
+}
+
 void Cluster::begin_view(const Scene& scene, const ViewRequest& request) {
   costs_.fit(request.grid);
-  scheduler_.begin_view(request.grid, costs_);
+  costs_.reproject(view_.camera, *scene.camera, visible_points_);
+  // As far as the last view came; what is not refined has but one step.
+  const bool foreseen = request.update == Update::kAll && !costs_.empty();
+  const Step last = foreseen ? std::max(Step{1}, view_.cast()) : Step{1};
+  const TileGrid grid = cut(request, last);
+  costs_.fit(grid);
+  scheduler_.begin_view(grid, costs_, last);
   if (view_.cast() > kNoStep) whole_view_ = std::move(view_);
   view_ = {};
   // What was told of the old view and not yet heard would be taken for the new one's.
@@ -224,22 +245,24 @@ void Cluster::begin_view(const Scene& scene, const ViewRequest& request) {
   });
   ++epoch_.value;
   view_.epoch = epoch_;
-  view_.grid = request.grid;
-  view_.tiles.resize(request.grid.count());
+  view_.camera = *scene.camera;
+  view_.grid = grid;
+  view_.tiles.resize(grid.count());
+  view_.predicted = !costs_.empty();
   view_.worker_seconds.resize(static_cast<std::size_t>(topology_.workers));
   std::fill(bands_.begin(), bands_.end(), kNoStep);
   view_.begin = Clock::now();
   const BeginView message{view_.epoch,
                           revision_,
                           *scene.camera,
-                          request.grid,
+                          grid,
                           request.refinement,
                           request.update,
                           request.frame,
                           scene.image.background,
                           scene.image.color_space};
   send_to_workers(message);
-  for (int w = 0; w < topology_.workers; ++w) supply(w);
+  supply_all();
   for (int c = 0; c < topology_.compositors; ++c) {
     post_.to_compositor(topology_.compositor(c), message);
   }
@@ -247,16 +270,31 @@ void Cluster::begin_view(const Scene& scene, const ViewRequest& request) {
 
 void Cluster::refine_further() {
   scheduler_.open_step(costs_);
-  for (int w = 0; w < topology_.workers; ++w) supply(w);
+  supply_all();
 }
 
 void Cluster::cancel_view() { scheduler_.cancel(); }
 
 void Cluster::supply(int worker) {
-  while (const auto quantum = scheduler_.next(worker)) {
-    post_.to_worker(topology_.worker(worker),
-                    RenderTile{view_.epoch, quantum->tile, quantum->from, quantum->to});
+  while (give(worker)) {
   }
+}
+
+void Cluster::supply_all() {
+  for (bool any = true; any;) {
+    any = false;
+    for (int w = 0; w < topology_.workers; ++w) any = give(w) || any;
+  }
+}
+
+bool Cluster::give(int worker) {
+  const auto quantum = scheduler_.next(worker);
+  if (!quantum) return false;
+  RenderTiles message{{{view_.epoch, quantum->tile, quantum->from, quantum->to}}};
+  while (const auto tile = scheduler_.join(worker))
+    message.tiles.push_back({view_.epoch, *tile, quantum->from, quantum->to});
+  post_.to_worker(topology_.worker(worker), std::move(message));
+  return true;
 }
 
 void Cluster::on(Rank, ViewTaken message) {
@@ -272,13 +310,16 @@ void Cluster::on(Rank from, TileDone message) {
       scheduler_.done(worker, message.tile, message.to, message.quality.squared_error);
   if (finished == Finished::kNot) return;
   supply(worker);
-  costs_.record(message.tile, message.to, std::chrono::microseconds(message.cost_us));
+  ViewState::Tile& tile = view_.tiles[message.tile.value];
+  tile.predicted_seconds += 1e-6 * costs_.predict_us(message.tile, message.to);
+  // A newcomer has cast the earlier steps again: that is not what this one costs.
+  if (message.to == Step{1} || tile.worker == from)
+    costs_.record(message.tile, message.to, std::chrono::microseconds(message.cost_us));
   // Rays are those of the picture, whoever cast them.
   if (finished == Finished::kFirst) {
     view_.rays += message.rays;
     view_.samples += message.samples;
   }
-  ViewState::Tile& tile = view_.tiles[message.tile.value];
   tile.worker = from;
   tile.seconds += 1e-6 * message.cost_us;
   view_.worker_seconds[static_cast<std::size_t>(worker)] += 1e-6 * message.cost_us;
@@ -353,7 +394,7 @@ void Cluster::lose(Rank rank) {
   const Step cast = view_.cast();
   const bool view_lost = view_.held < cast;
   if (view_lost) scheduler_.cancel();
-  for (int w = 0; w < topology_.workers; ++w) supply(w);
+  supply_all();
   events_.push_back(WorkerLost{rank, view_lost});
 }
 

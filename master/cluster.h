@@ -41,6 +41,7 @@ struct ClusterOptions {
   std::optional<int> slabs = {};  ///< parts of the volume, 0: one for each worker; absent: not cut
   /// Asked while waiting for other ranks; true ends the job with Interrupted.
   std::function<bool()> interrupted = [] { return false; };
+  Strategy strategy = {};
 };
 
 struct RankState {
@@ -69,7 +70,8 @@ struct StepState {
 /// What is known of the view that is being cast.
 struct ViewState {
   Epoch epoch;
-  TileGrid grid;
+  Camera camera;
+  TileGrid grid;  ///< as it was cut
   Clock::time_point begin;
   std::vector<StepState> steps;  ///< those that all tiles have taken
   Step held = kNoStep;           ///< the compositors hold all of it
@@ -79,11 +81,13 @@ struct ViewState {
   std::chrono::duration<double> taken{0};  ///< from its begin until the last of them had said so
   struct Tile {
     Rank worker;
-    double seconds = 0;
+    double seconds = 0;            ///< of processors, in all its steps
+    double predicted_seconds = 0;  ///< that they were thought to take
     TileQuality quality;
   };
   std::vector<Tile> tiles;
-  std::vector<double> worker_seconds;  ///< thread time that each worker has spent on its tiles
+  bool predicted = false;              ///< there was a last frame to predict costs by
+  std::vector<double> worker_seconds;  ///< processor time that each worker has spent on its tiles
 
   Step cast() const { return {static_cast<std::uint16_t>(steps.size())}; }
   double pixels() const { return double(grid.image.width) * grid.image.height; }
@@ -113,6 +117,7 @@ struct ViewRequest {
   Refinement refinement;
   Update update = Update::kAll;
   std::uint32_t frame = 0;
+  bool split = false;  ///< dear tiles may be split: the samples do not depend on the cut
 };
 
 /// Who has read a slab, and what it is like.
@@ -161,6 +166,8 @@ class Cluster {
   const std::string& kernel() const { return kernel_; }
   /// Places that the committed scene may show, mm.
   const std::vector<glm::dvec3>& visible_points() const { return visible_points_; }
+  /// That compute, of all workers that are not lost.
+  int threads() const;
   Post& post() { return post_; }
 
   /// Ends the job on every other rank. True if none was lost.
@@ -185,6 +192,7 @@ class Cluster {
     events_.push_back(std::move(message));
   }
   void begin_session();
+  TileGrid cut(const ViewRequest& request, Step last) const;
   /// Waits until `done`, handling what comes meanwhile.
   void wait_until(const std::function<bool()>& done);
   /// Which slab a worker holds; 0 where the volume is not cut.
@@ -204,7 +212,11 @@ class Cluster {
   void lose(Rank rank);
   /// Handles one message if there is one; false if there was none.
   bool handle_one();
+  /// One quantum; false if there is no room or no work.
+  bool give(int worker);
   void supply(int worker);
+  /// In turns, so that no worker's spare is dearer than what another begins with.
+  void supply_all();
   void finish_step();
   void note_held();
 

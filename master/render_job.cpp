@@ -45,7 +45,8 @@ bool is_exhausted(const ViewState& view) {
 /// Refines until the rule or the time says stop, and the compositors hold it all.
 void cast_view(Cluster& cluster, const Scene& scene, const RenderRequest& request) {
   const auto begin_view = [&] {
-    cluster.begin_view(scene, {request.grid, refinement_of(request.stop)});
+    cluster.begin_view(
+        scene, {request.cut.grid, refinement_of(request.stop), Update::kAll, 0, request.cut.split});
   };
   begin_view();
   const ViewState& view = cluster.view();
@@ -111,7 +112,7 @@ void collect(Cluster& cluster, const RenderRequest& request, RenderedFrame& fram
 RenderedFrame render_frame(Cluster& cluster, const Scene& scene, const RenderRequest& request) {
   cast_view(cluster, scene, request);
   RenderedFrame frame;
-  frame.size = request.grid.image;
+  frame.size = request.cut.grid.image;
   frame.rgba.resize(4 * static_cast<std::size_t>(frame.size.width) *
                     static_cast<std::size_t>(frame.size.height));
   frame.view = cluster.view();

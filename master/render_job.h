@@ -8,11 +8,12 @@
 
 #include "master/cluster.h"
 #include "master/stop_rule.h"
+#include "master/tile_cut.h"
 
 namespace goldthread {
 
 struct RenderRequest {
-  TileGrid grid;
+  ViewCut cut;
   StopRule stop;
   Filter filter = Filter::kBilinear;
   /// Stop after this long with what is there by then, but at least the first step.

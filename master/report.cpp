@@ -3,6 +3,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "master/balance.h"
 #include "master/names.h"
 #include "master/stop_rule.h"
 #include "master/traffic.h"
@@ -26,6 +27,7 @@ Json frames_of(const std::vector<ViewState>& frames) {
   Json list = Json::array();
   for (const ViewState& view : frames) {
     const StepState* shown = view.shown();
+    const auto error = prediction_error(view);
     list.push_back({{"seconds", shown != nullptr ? shown->held.count() : 0},
                     {"rays", view.rays},
                     {"samples", view.samples},
@@ -33,6 +35,8 @@ Json frames_of(const std::vector<ViewState>& frames) {
                     {"estimatedError", estimated_error(view)},
                     {"firstPictureSeconds", view.steps.empty() ? 0 : view.steps[0].held.count()},
                     {"takenSeconds", view.taken.count()},
+                    {"imbalance", imbalance(view.worker_seconds)},
+                    {"predictionError", error ? Json(*error) : Json()},
                     {"steps", steps_of(view)}});
   }
   return list;
@@ -40,8 +44,9 @@ Json frames_of(const std::vector<ViewState>& frames) {
 
 Json tiles_of(const ViewState& view) {
   Json list = Json::array();
-  for (std::uint32_t i = 0; i < view.grid.count(); ++i) {
-    const PixelRect rect = view.grid.rect({i});
+  const auto rects = view.grid.rects();
+  for (std::size_t i = 0; i < rects.size(); ++i) {
+    const PixelRect& rect = rects[i];
     list.push_back({{"x", rect.x},
                     {"y", rect.y},
                     {"width", rect.width},
@@ -75,6 +80,16 @@ Json bytes_of(const std::vector<RankState>& ranks) {
 double estimated_error(const ViewState& view) {
   const StepState* shown = view.shown();
   return shown != nullptr ? rms_error(shown->quality.squared_error, view.pixels()) : 255;
+}
+
+std::optional<double> prediction_error(const ViewState& view) {
+  if (!view.predicted) return {};
+  std::vector<double> predicted, actual;
+  for (const ViewState::Tile& tile : view.tiles) {
+    predicted.push_back(tile.predicted_seconds);
+    actual.push_back(tile.seconds);
+  }
+  return prediction_error(predicted, actual);
 }
 
 std::string report_json(const Cluster& cluster, const std::vector<ViewState>& frames,

@@ -3,11 +3,13 @@
 // Who casts which tile next. All tiles take a step before any takes the next, so that what a
 // picture holds after a step depends on nobody's speed. Within a step the order is: at the first
 // step of a view descending predicted cost (longest first), after that descending (estimated error
-// × area) / predicted cost. A tile stays with the worker that holds its state; a worker with
-// nothing left takes over another's where casting the earlier steps again is quicker than waiting.
-// What a lost worker has done of the open step is done again: its samples may have gone with it.
-// Pure: no clock, no transport. Invariant: each (tile, step) of a view is done for the first time
-// once.
+// × area) / predicted cost. Tiles go to whoever has room; where several steps are foreseen, each
+// worker is dealt tiles that will take as long in all as the others'. A tile stays with the worker
+// that holds its state; a worker with nothing left takes over another's where that is quicker than
+// waiting. Cheap tiles go out together, so that what a quantum costs beside its rays does not
+// count. What a lost worker has done of the open step is done again: its samples may have gone with
+// it. Pure: no clock, no transport. Invariant: each (tile, step) of a view is done for the first
+// time once.
 
 #include <cstdint>
 #include <deque>
@@ -34,20 +36,54 @@ enum class Finished : std::uint8_t {
   kFirst
 };
 
+/// The order in which tiles go out; VOL2 compares the two.
+enum class Order : std::uint8_t {
+  kUrgent,  ///< descending predicted cost at the first step, then error per cost
+  kScreen   ///< as they are numbered, from the top left; nothing is asked of costs
+};
+/// Who gets a tile.
+enum class Share : std::uint8_t {
+  kOnDemand,    ///< whoever has room
+  kContiguous,  ///< each worker as many tiles, one after the other; no one takes over
+  kInterleaved  ///< likewise, but worker w of n each n-th
+};
+/// What benches compare; jobs use the default.
+struct Strategy {
+  Order order = Order::kUrgent;
+  Share share = Share::kOnDemand;
+};
+
+/// Cheap tiles are joined until the quantum is predicted to take so long, or this share of what a
+/// thread has to do in the step, whatever is less: then the last one to end is hardly late.
+constexpr double kJoinedUs = 300;
+constexpr double kJoinedShare = 1.0 / 64;
+constexpr std::size_t kMostJoined = 16;
+/// A spare is held back from a worker whose threads are busy once what waits beside it would keep
+/// the threads that it waits for busy for less than this many times as long: at the end of a step
+/// it would wait there while others are idle. What is no dearer than joined tiles never is, nor what
+/// would take another worker more than this many times as long.
+constexpr double kSpareRounds = 2;
+
 class Scheduler {
  public:
   /// `capacity[w]`: how many quanta worker w may hold at once, its spare one included.
-  explicit Scheduler(const std::vector<int>& capacity);
+  explicit Scheduler(const std::vector<int>& capacity, Strategy strategy = {});
 
-  /// Forgets the old view and everything in flight; the first step is open.
-  void begin_view(const TileGrid& grid, const CostHistory& costs);
+  /// Forgets the old view and everything in flight; the first step is open. `last`: the step up to
+  /// which costs foresee the view to be refined, 1 of one that has no more or that nothing is known
+  /// of.
+  void begin_view(const TileGrid& grid, const CostHistory& costs, Step last = {1});
   /// Opens the next step; the one before must be finished.
   void open_step(const CostHistory& costs);
   /// Nothing of the view is given out any more.
   void cancel();
 
-  /// The next quantum for `worker`, if it has room and there is work.
+  /// The next quantum for `worker`, if it has room and there is work for it. One with fewer than it
+  /// has threads always gets what is its own or nobody's.
   std::optional<Quantum> next(int worker);
+  /// Directly after next(): another tile for the same quantum, while that remains small. It has its
+  /// own done(); there is room for the next quantum when all of them are.
+  std::optional<TileId> join(int worker);
   /// `worker` has finished a quantum; anything it does not hold is ignored. `squared_error` is the
   /// tile's, summed over its pixels.
   Finished done(int worker, TileId tile, Step to, double squared_error);
@@ -62,12 +98,18 @@ class Scheduler {
   bool finished() const { return open_ == 0; }
 
  private:
+  /// Tiles that wait, the most urgent first, and what they are predicted to take.
+  struct Queue {
+    std::deque<TileId> tiles;
+    double us = 0;
+  };
   struct Worker {
     int capacity = 0;
     bool lost = false;
-    std::vector<TileId> held;
-    std::deque<TileId> waiting;  ///< those whose state it holds, the most urgent first
-    double waiting_us = 0;
+    std::vector<std::vector<TileId>> held;  ///< quanta, the newest last
+    double newest_us = 0;                   ///< predicted of that one
+    Queue waiting;                          ///< tiles whose state it holds, or that it was dealt
+    int threads() const { return capacity > 1 ? capacity - 1 : 1; }
   };
   struct Tile {
     int owner = -1;      ///< worker that holds its state
@@ -75,18 +117,33 @@ class Scheduler {
     bool again = false;  ///< the open step was done before, by a lost worker
     double squared_error = 0;
     double cost_us = 0;      ///< predicted, of the open step
-    double all_cost_us = 0;  ///< of this and all earlier steps: what a newcomer would spend
+    double all_cost_us = 0;  ///< of all steps up to this one, or the last foreseen: what a newcomer
+                             ///< would spend
   };
+  void deal_alike();
+  void deal_by_cost(const CostHistory& costs);
+  std::vector<int> alive() const;
+  int threads() const;
   void queue(const CostHistory& costs);
+  void put(Queue& queue, TileId tile);
+  TileId take(Queue& queue, std::deque<TileId>::iterator at);
+  Queue& queue_for(Worker& worker) {
+    return worker.waiting.tiles.empty() ? unowned_ : worker.waiting;
+  }
+  bool is_due(const Worker& taker, TileId tile, double waiting_us, int threads) const;
   std::optional<TileId> take(int worker);
   std::optional<TileId> take_over(int worker);
+  double held_us(const Worker& worker) const;
   /// What `worker` has done of the open step, which is not done any more.
   std::vector<TileId> take_back(int worker);
 
+  Strategy strategy_;
   std::vector<Worker> workers_;
   std::vector<Tile> tiles_;
-  std::deque<TileId> unowned_;  ///< in order
+  Queue unowned_;
+  double joined_us_ = 0;  ///< that joined tiles may take
   Step step_ = kNoStep;
+  Step last_{1};  ///< foreseen
   std::size_t open_ = 0;
 };
 

@@ -302,12 +302,14 @@ void ServeJob::cast(const Camera& camera) {
   paused_ = again_ = false;
   Scene scene = scene_;
   scene.camera = camera;
-  const TileGrid grid = request_.grid(scene_.image.size);
-  if (grid != cluster_.view().grid) whole_.reset();
+  if (scene_.image.size != cluster_.view().grid.image) whole_.reset();
   const bool moving = is_moving() && cine_.idle();
   update_ = moving ? update_in_motion(request_.display.update, whole_) : Update::kAll;
   back_ = {camera, edits_, {}, kLargestSpatialErrorPx, update_};
-  cluster_.begin_view(scene, {grid, refinement_of(request_.stop), update_, moving_frame_++});
+  const ViewCut cut = cut_of(request_.tiles, scene_.image.size, request_.stop.sampling, update_,
+                             cluster_.threads());
+  cluster_.begin_view(
+      scene, {cut.grid, refinement_of(request_.stop), update_, moving_frame_++, cut.split});
   back_.epoch = cluster_.view().epoch;
   if (update_ == Update::kAll) return;
   // What was updated in another way is not kept.

@@ -14,6 +14,7 @@
 #include "master/load_messages.h"
 #include "master/page_messages.h"
 #include "master/stop_rule.h"
+#include "master/tile_cut.h"
 
 namespace goldthread {
 
@@ -24,7 +25,7 @@ struct ServeRequest {
   std::optional<ImageSize> size;  ///< fixed by the user; else the page may choose
   StopRule stop;                  ///< when a picture is good enough to be shown without loss
   DisplaySettings display;
-  std::function<TileGrid(ImageSize)> grid;
+  TileChoice tiles;
   /// The scene with everything chosen that it leaves open.
   std::function<Scene(const Scene&, const VolumeInfo&)> resolve;
   /// The step of its rays, mm.

@@ -3,7 +3,7 @@
 
 #include <utility>
 
-#include "common/base/thread_time.h"
+#include "common/base/thread_clock.h"
 #include "worker/refine_tile.h"
 #include "worker/thread_priority.h"
 
@@ -100,11 +100,12 @@ void ComputePool::note_failure() {
 void ComputePool::cast(const CastView& view, const RenderTile& quantum,
                        std::unique_ptr<TileRefinement> tile, std::size_t thread,
                        const std::stop_token& stop) {
-  const auto begin = thread_time();
+  // Not by the clock on the wall: a thread that was made to wait has had no dear tile.
+  const auto begin = ThreadClock::now();
   auto result = refine_tile(view, quantum, std::move(tile), [&] {
     return epoch_.load(std::memory_order_relaxed) != quantum.epoch.value || stop.stop_requested();
   });
-  const auto cost = thread_time() - begin;
+  const auto cost = ThreadClock::now() - begin;
   const auto end = BusyLog::Clock::now();
   const auto cost_us = std::chrono::duration_cast<std::chrono::microseconds>(cost).count();
   {

@@ -44,7 +44,8 @@ class ComputePool {
   std::vector<Done> take_done();
   /// The view whose first quantum a thread has begun since the last call.
   std::optional<Epoch> take_begun();
-  /// What the threads have spent on quanta until `now`: finished, abandoned and running ones.
+  /// Processor time that the threads have spent on quanta until `now`: finished, abandoned and
+  /// running ones.
   BusyLog busy_log(BusyLog::Clock::time_point now) const;
 
  private:

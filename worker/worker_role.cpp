@@ -174,11 +174,13 @@ std::shared_ptr<const SampleSource> WorkerRole::source_of(const BeginView& view)
   return slabs_->begin_view(view, scene_, volume_->info().geometry);
 }
 
-void WorkerRole::on(const RenderTile& message) {
-  if (!view_ || message.epoch != view_->epoch) return;
-  require(message.tile.value < view_->grid.count() && is_step(message.from, message.to),
-          "was given a tile or step that its view does not have");
-  pool_->push(message);
+void WorkerRole::on(const RenderTiles& message) {
+  for (const RenderTile& tile : message.tiles) {
+    if (!view_ || tile.epoch != view_->epoch) continue;
+    require(tile.tile.value < view_->grid.count() && is_step(tile.from, tile.to),
+            "was given a tile or step that its view does not have");
+    pool_->push(tile);
+  }
 }
 
 void WorkerRole::on(AdvanceRays message) {

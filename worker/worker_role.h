@@ -38,7 +38,7 @@ class WorkerRole {
   void on(const WorkerGone& message);
   void on(const CommitScene& message);
   void on(const BeginView& message);
-  void on(const RenderTile& message);
+  void on(const RenderTiles& message);
   void on(AdvanceRays message);
   void on(const RaysAdvanced& message);
   void on(const ReportCounters& message);

@@ -32,7 +32,7 @@ std::vector<double> batch_seconds(const Subject& subject, const Scene& scene, in
 
 std::vector<double> interrupt_seconds(const Scene& scene, int threads, int count,
                                       const std::function<void(double)>& progress) {
-  Session session(scene, threads);
+  Session session(scene, {}, {threads, true});
   std::mt19937 random(kSeed);
   std::uniform_real_distribution<double> time(0, kMostSeconds), degrees(0, 360);
   std::vector<double> seconds;

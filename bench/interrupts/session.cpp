@@ -19,13 +19,20 @@ std::vector<std::unique_ptr<Transport>> connected(const LoopbackNetwork& network
 
 }  // namespace
 
-Session::Session(Scene scene, int threads)
+Session::Session(Scene scene, Topology topology, ClusterOptions options)
     : scene_(std::move(scene)),
+      topology_(topology),
       network_(topology_.size()),
       transports_(connected(network_, topology_.size())),
-      cluster_(*transports_[0], topology_, {threads, true}) {
-  ranks_.emplace_back([this] { CompositorRole(*transports_[1]).run(); });
-  ranks_.emplace_back([this] { WorkerRole(*transports_[2]).run(); });
+      cluster_(*transports_[0], topology_, std::move(options)) {
+  for (int i = 1; i < topology_.size(); ++i) {
+    ranks_.emplace_back([&transport = *transports_[std::size_t(i)], topology] {
+      if (topology.role_of(transport.rank()) == Role::kCompositor)
+        CompositorRole(transport).run();
+      else
+        WorkerRole(transport).run();
+    });
+  }
   cluster_.greet();
   cluster_.load_volume(scene_.volumes.front(), [](double) {});
   cluster_.commit(scene_);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// A session without pages: all roles in threads of this process, one compositor and one worker,
-// which refines a view until the next one begins.
+// A session without pages: all roles in threads of this process, the master's part being the
+// caller's.
 
 #include <memory>
 #include <thread>
@@ -16,7 +16,7 @@ namespace goldthread::bench {
 class Session {
  public:
   /// `scene` resolved for its volume, which is read. Throws FatalError.
-  Session(Scene scene, int threads);
+  Session(Scene scene, Topology topology, ClusterOptions options);
   ~Session();
   Session(const Session&) = delete;
   Session& operator=(const Session&) = delete;
@@ -25,6 +25,9 @@ class Session {
   double look(const Camera& camera);
   /// Lets the view be refined for so long.
   void refine(std::chrono::duration<double> time);
+
+  Cluster& cluster() { return cluster_; }
+  const Scene& scene() const { return scene_; }
 
  private:
   void poll(std::chrono::microseconds at_most);

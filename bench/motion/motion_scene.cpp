@@ -2,9 +2,9 @@
 #include "bench/motion/motion_scene.h"
 
 #include <algorithm>
-#include <ctime>
 
 #include "bench/error/frame.h"
+#include "common/base/thread_clock.h"
 #include "common/tile/tile_grid.h"
 
 namespace goldthread::bench {
@@ -17,9 +17,7 @@ constexpr int kTrueRays = 3;  ///< of a pixel's row and column
 }  // namespace
 
 double thread_seconds() {
-  timespec time{};
-  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &time);
-  return double(time.tv_sec) + 1e-9 * double(time.tv_nsec);
+  return std::chrono::duration<double>(ThreadClock::now().time_since_epoch()).count();
 }
 
 double thread_seconds_of(const std::function<void()>& work) {

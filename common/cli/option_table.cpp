@@ -309,8 +309,11 @@ constexpr OptionRow kTable[] = {
      [](Options& o, const std::string& t) { return read_integer(t, 1, 1024, o.threads); }},
     {"compositors", "--compositors", "N", kCluster, "Compositor ranks [1]", kBoth,
      [](Options& o, const std::string& t) { return read_integer(t, 1, 1024, o.compositors); }},
-    {"tile", "--tile", "N", kCluster, "Tile edge in pixels, a multiple of 16 [64]", kBoth,
-     apply_tile},
+    {"tile", "--tile", "N", kCluster,
+     "Edge of all tiles in pixels, a multiple of 16 [64; with every-pixel by the picture's size "
+     "and "
+     "the threads, dear tiles split]",
+     kBoth, apply_tile},
     {"schedule", "--schedule", "HOW", kCluster,
      "squares or rows: which parts of the screen go out together [squares]", kBoth, apply_schedule},
     {"data", "--data", "WHERE", kCluster,

@@ -61,7 +61,7 @@ struct Options {
   std::optional<int> workers;  ///< absent: 1, or what mpirun gives; refused under mpirun
   std::optional<int> threads;  ///< absent: cores of the node / worker ranks on it
   int compositors = 1;
-  int tile_px = 64;
+  std::optional<int> tile_px;  ///< edge of all tiles; absent: as the master chooses
   Bypass bypass;
   std::optional<int> slabs;  ///< parts of the volume; absent: each node holds all of it
   Schedule schedule = Schedule::kSquares;

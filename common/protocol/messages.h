@@ -150,7 +150,7 @@ struct TileDone {
   Epoch epoch;
   TileId tile;
   Step to;
-  std::uint32_t cost_us = 0;  ///< time that a thread spent on it
+  std::uint32_t cost_us = 0;  ///< processor time that a thread spent on it
   std::uint64_t rays = 0;
   std::uint64_t samples = 0;
   TileQuality quality;
@@ -317,14 +317,20 @@ struct BeginView {
                      &BeginView::grid, &BeginView::refinement, &BeginView::update,
                      &BeginView::frame, &BeginView::background, &BeginView::color_space)
 };
-/// One quantum of work: take a tile that has taken `from` steps to `to`.
+/// Take a tile that has taken `from` steps to `to`.
 struct RenderTile {
   Epoch epoch;
   TileId tile;
   Step from;
   Step to;
-  GOLDTHREAD_MESSAGE(RenderTile, &RenderTile::epoch, &RenderTile::tile, &RenderTile::from,
-                     &RenderTile::to)
+  static constexpr auto fields() {
+    return std::tuple{&RenderTile::epoch, &RenderTile::tile, &RenderTile::from, &RenderTile::to};
+  }
+};
+/// One quantum of work: a tile, or several cheap ones, in this order. Each is answered for itself.
+struct RenderTiles {
+  std::vector<RenderTile> tiles;
+  GOLDTHREAD_MESSAGE(RenderTiles, &RenderTiles::tiles)
 };
 /// Asks for Counters.
 struct ReportCounters {
@@ -363,7 +369,7 @@ struct RaysAdvanced {
 };
 
 using ToWorker = std::variant<BeginSession, LoadVolume, MapVolume, CountVoxels, DescribeVolume,
-                              WorkerGone, CommitScene, BeginView, RenderTile, AdvanceRays,
+                              WorkerGone, CommitScene, BeginView, RenderTiles, AdvanceRays,
                               RaysAdvanced, ReportCounters, Stop>;
 
 // ---- to a compositor

@@ -12,7 +12,11 @@ struct BenchSubject {
   std::string_view name;
   int (*run)(const Options& options);
 };
-constexpr BenchSubject kSubjects[] = {{"error", run_error_bench}, {"motion", run_motion_bench}};
+constexpr BenchSubject kSubjects[] = {
+    {"error", run_error_bench},
+    {"motion", run_motion_bench},
+    {"balance", run_balance_bench},
+};
 
 }  // namespace
 

@@ -17,6 +17,7 @@ int run_info(const Options& options);
 int run_bench(const Options& options);
 int run_error_bench(const Options& options);
 int run_motion_bench(const Options& options);
+int run_balance_bench(const Options& options);
 
 /// What the master does once all ranks are there.
 class Cluster;

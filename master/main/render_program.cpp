@@ -138,8 +138,9 @@ void run_render(Cluster& cluster, const Options& options) {
   cluster.commit(scene);
 
   RenderRequest request;
-  request.grid = grid_of(options, scene.image.size);
   request.stop = stop_rule_of(options);
+  request.cut = cut_of(tile_choice_of(options), scene.image.size, request.stop.sampling,
+                       Update::kAll, cluster.threads());
   request.filter = options.filter;
   if (options.time_s) request.time = std::chrono::duration<double>(*options.time_s);
   request.interrupted = interrupted;

@@ -15,9 +15,8 @@ Scene scene_of(const Options& options) {
   return scene;
 }
 
-TileGrid grid_of(const Options& options, ImageSize image) {
-  return options.schedule == Schedule::kRows ? TileGrid::rows_of(image)
-                                             : TileGrid::squares(image, options.tile_px);
+TileChoice tile_choice_of(const Options& options) {
+  return {options.tile_px, options.schedule == Schedule::kRows};
 }
 
 StopRule stop_rule_of(const Options& options) {

@@ -4,15 +4,15 @@
 
 #include "common/cli/options.h"
 #include "common/scene/scene.h"
-#include "common/tile/tile_grid.h"
 #include "common/volume/volume.h"
 #include "master/stop_rule.h"
+#include "master/tile_cut.h"
 
 namespace goldthread {
 
 /// The scene of the command line, the options that overrule it applied. Throws FatalError.
 Scene scene_of(const Options& options);
-TileGrid grid_of(const Options& options, ImageSize image);
+TileChoice tile_choice_of(const Options& options);
 StopRule stop_rule_of(const Options& options);
 /// The step of rays in mm where the scene leaves it open: as `rule` allows when only the finished
 /// picture counts. 0, the kernels' default, for pictures of every pixel.

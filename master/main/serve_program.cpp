@@ -41,7 +41,7 @@ void run_serve(Cluster& cluster, const Options& options) {
   request.port = options.port;
   request.token = token;
   if (size_given) request.size = scene.image.size;
-  request.grid = [&](ImageSize size) { return grid_of(options, size); };
+  request.tiles = tile_choice_of(options);
   request.stop = stop_rule_of(options);
   request.display = {options.filter, options.update, false};
   request.resolve = resolve_scene;

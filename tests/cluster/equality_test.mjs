@@ -3,10 +3,10 @@
 // Arguments: "loopback", or "mpi" and the number of ranks.
 
 import assert from 'node:assert/strict';
-import { existsSync } from 'node:fs';
+import { existsSync, readFileSync } from 'node:fs';
 import test from 'node:test';
 import { headScene, headVolume, inScratch, run, runCommand, runRanks } from './support/program.mjs';
-import { lit, sceneOf, surfaces, writeJson, writeNrrd } from './support/data.mjs';
+import { camera, lit, sceneOf, surfaces, writeJson, writeNrrd } from './support/data.mjs';
 import { covered, difference, readPng } from './support/picture.mjs';
 
 const [transport, ranksText] = process.argv.slice(2);
@@ -89,6 +89,25 @@ if (transport === 'loopback') {
     for (const tiles of tilings) {
       await expectEqual(scenes['surfaces in dvr'], '301x197', [...tiles, ...roles(5, 2)], { quality: everyPixel });
       await expectEqual(scenes['lit dvr'], '301x197', [...tiles, ...roles(3, 1)], { quality: everyPixel });
+    }
+  });
+  test('Frames whose dear tiles were split are to the bit those of tiles of one size', async () => {
+    // Far away and with short steps all the cost is in a few tiles; each frame but the first knows the last one's.
+    const far = writeJson('far.json', sceneOf(volume, { shading: lit },
+                                              { camera: { ...camera, position: [150, -270, 120] } }));
+    const frames = ['render', far, '--size', '301x197', '--orbit', '3,6', '--step', '0.02', ...everyPixel];
+    const whole = await run([...frames, '-o', inScratch('whole%d.exr'), '--tile', '64', '--threads', '1']);
+    assert.equal(whole.status, 0, whole.stderr);
+    for (const [name, options] of [['few', ['--threads', '1']], ['some', [...roles(6, 2), '--threads', '1']],
+                                   ['many', [...roles(8, 3), '--threads', '3']]]) {
+      const report = inScratch(`${name}.json`);
+      const made = await run([...frames, '-o', inScratch(`${name}%d.exr`), ...options, '--report', report]);
+      assert.equal(made.status, 0, made.stderr);
+      const tiles = JSON.parse(readFileSync(report)).tiles;
+      const edges = new Set(tiles.map((tile) => tile.width).filter((width) => width % 16 === 0));
+      if (name === 'some') assert.ok(edges.size > 1, `nothing was split: ${[...edges]}`);
+      for (const frame of [0, 1, 2])
+        assert.equal(await differs(inScratch(`whole${frame}.exr`), inScratch(`${name}${frame}.exr`)), false, made.line);
     }
   });
   test('Chosen samples of tiles of one size, or rows, give one picture over ranks', async () => {

@@ -75,16 +75,53 @@ TEST(CostHistory, AddsUpAllStepsOfATile) {
   EXPECT_EQ(history.predict_all_us({0}, {5}), 129);
 }
 
-TEST(CostHistory, IsForgottenWithItsGridAndKeptWithTheSame) {
+TEST(CostHistory, OutlivesAnotherCutOfTheScreen) {
+  CostHistory history = fitted();
+  for (std::uint32_t i = 0; i < kGrid.count(); ++i)
+    history.record({i}, kFirst, microseconds(i == 1 ? 64 : 16));
+  TileGrid finer = TileGrid::squares(kGrid.image, 32);
+  history.fit(finer);
+  EXPECT_EQ(history.predict_us({0}, kFirst), 4);
+  EXPECT_EQ(history.predict_us({2}, kFirst), 16) << "a quarter of tile 1";
+  history.fit(TileGrid::rows_of(kGrid.image));
+  EXPECT_EQ(history.predict_us({0}, kFirst), 4 + 16 + 4 + 4) << "a quarter of four tiles";
+  TileGrid split = kGrid;
+  split.splits = {{1, 0b0001}};
+  history.fit(split);
+  EXPECT_EQ(history.predict_us({0}, kFirst), 16);
+  EXPECT_EQ(history.predict_us({1}, kFirst), 4);
+  EXPECT_EQ(history.predict_us({5}, kFirst), 16);
+  history.fit(kGrid);
+  EXPECT_EQ(history.predict_us({1}, kFirst), 64);
+}
+
+TEST(CostHistory, IsForgottenWithTheSizeOfThePicture) {
   CostHistory history = fitted();
   history.record({1}, kFirst, microseconds(7));
-  history.fit(kGrid);
-  EXPECT_EQ(history.predict_us({1}, kFirst), 7);
-  history.fit(TileGrid::squares({256, 256}, 32));
+  history.fit(TileGrid::squares({128, 256}, 64));
   EXPECT_TRUE(history.empty());
   EXPECT_EQ(history.predict_us({1}, kFirst), 0);
   history.fit(kGrid);
   EXPECT_TRUE(history.empty()) << "what was forgotten does not come back";
+}
+
+TEST(CostHistory, TakesAllLateStepsForOne) {
+  CostHistory history = fitted();
+  history.record({0}, {150}, microseconds(7));
+  EXPECT_EQ(history.last_step(), kLastForeseen);
+  EXPECT_EQ(history.predict_us({0}, {149}), 7);
+  EXPECT_EQ(history.predict_us({0}, {31}), 0);
+  history.record({0}, kLastStep, microseconds(9));
+  EXPECT_EQ(history.predict_us({0}, {150}), 9);
+}
+
+TEST(CostHistory, ForeseesAnAreaOverAllSteps) {
+  CostHistory history = fitted();
+  history.record({0}, kFirst, microseconds(64));
+  history.record({0}, kSecond, microseconds(128));
+  EXPECT_EQ(history.last_step(), kSecond);
+  EXPECT_EQ(history.predict_area_us({16, 32, 16, 16}, kFirst), 4);
+  EXPECT_EQ(history.predict_area_us({16, 32, 16, 16}, kSecond), 12);
 }
 
 TEST(CostHistory, IgnoresNoStepAndTilesOutsideItsGrid) {

@@ -15,7 +15,7 @@ namespace {
 ViewState view() {
   ViewState view;
   view.grid = TileGrid::squares({100, 70}, 64);
-  for (std::uint32_t i = 0; i < view.grid.count(); ++i) view.tiles.push_back({{2}, 1e-3 * i, {}});
+  for (std::uint32_t i = 0; i < view.grid.count(); ++i) view.tiles.push_back({{2}, 1e-3 * i, 0, {}});
   return view;
 }
 
@@ -53,7 +53,7 @@ TEST(CostPicture, TheScaleIsTheDearestOfAWholeTilesPixels) {
   EXPECT_EQ(cost_scale(view()), "0 to 56.9 ms per 64x64 pixels");  // 3 ms · 64 · 64 / (36 · 6)
   ViewState rows;
   rows.grid = TileGrid::rows_of({100, 32});
-  rows.tiles = {{{2}, 1e-3, {}}, {{2}, 2.5e-3, {}}};
+  rows.tiles = {{{2}, 1e-3, 0, {}}, {{2}, 2.5e-3, 0, {}}};
   EXPECT_EQ(cost_scale(rows), "0 to 2.5 ms per 100x16 pixels");
 }
 

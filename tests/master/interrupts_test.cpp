@@ -177,7 +177,7 @@ TEST(Interrupts, NoStepOfAStaleViewIsTold) {
 
 RenderedFrame render(LoopbackCluster& loopback) {
   RenderRequest request;
-  request.grid = kGrid;
+  request.cut.grid = kGrid;
   request.stop.error = 0.05;
   return render_frame(loopback.cluster(), loopback.scene(), request);
 }

@@ -3,10 +3,13 @@
 
 #include <gtest/gtest.h>
 
+#include <chrono>
 #include <semaphore>
 #include <set>
 #include <stdexcept>
+#include <thread>
 
+#include "common/base/thread_clock.h"
 #include "tests/worker/fake_source.h"
 #include "worker/refine_tile.h"
 
@@ -248,6 +251,36 @@ TEST(ComputePool, HoldsWhenViewsChangeWhileManyThreadsCast) {
       tiles.insert(done.samples.tile);
     }
   }
+}
+
+/// Spends the same processor time on each batch, and sleeps as long as it is told to.
+class SlowSource final : public CountingSource {
+ public:
+  SlowSource(std::chrono::milliseconds busy, std::chrono::milliseconds asleep)
+      : busy_(busy), asleep_(asleep) {}
+  CastCounts cast(std::span<const PixelPosition> positions, std::span<Sample> samples,
+                  std::span<std::uint32_t> surfaces) const override {
+    std::this_thread::sleep_for(asleep_);
+    const auto end = ThreadClock::now() + busy_;
+    while (ThreadClock::now() < end) {
+    }
+    return CountingSource::cast(positions, samples, surfaces);
+  }
+
+ private:
+  std::chrono::milliseconds busy_, asleep_;
+};
+
+TEST(ComputePool, TellsTheProcessorTimeOfATileNotThatOfTheClockOnTheWall) {
+  NotifyingPool pool(1);
+  using std::chrono::milliseconds;
+  pool.pool.begin_view(view(1, std::make_shared<SlowSource>(milliseconds(5), milliseconds(0))));
+  pool.pool.push({{1}, {0}, kNoStep, {1}});
+  EXPECT_GE(pool.take(1).front().report.cost_us, 5000u) << "one batch";
+  EXPECT_GE(pool.pool.busy_log(BusyLog::Clock::now()).total(), milliseconds(5));
+  pool.pool.begin_view(view(2, std::make_shared<SlowSource>(milliseconds(0), milliseconds(50))));
+  pool.pool.push({{2}, {0}, kNoStep, {1}});
+  EXPECT_LT(pool.take(1).front().report.cost_us, 25000u) << "it slept for 50 ms";
 }
 
 }  // namespace

@@ -3,7 +3,7 @@
 
 #include <utility>
 
-#include "common/base/thread_time.h"
+#include "common/base/thread_clock.h"
 #include "worker/slabs/ray_messages.h"
 #include "worker/thread_priority.h"
 
@@ -74,9 +74,9 @@ void RayPool::work(const std::stop_token& stop) {
     const auto caster = caster_;
     lock.unlock();
     try {
-      const auto begin = thread_time();
+      const auto begin = ThreadClock::now();
       Done done = advance(task, *caster);
-      const auto cost = thread_time() - begin;
+      const auto cost = ThreadClock::now() - begin;
       const auto end = BusyLog::Clock::now();
       lock.lock();
       busy_.add(end - cost, end);

@@ -60,10 +60,9 @@ TEST(CommandLine, DefaultsAreThePromisedOnes) {
   EXPECT_EQ(render.input, "s.json");
   EXPECT_EQ(render.output, "a.png");
   EXPECT_FALSE(render.size || render.step_mm || render.workers || render.threads ||
-               render.samples || render.time_s || render.orbit || render.token || render.report ||
-               render.cost_image);
+               render.samples || render.tile_px || render.time_s || render.orbit || render.token ||
+               render.report || render.cost_image);
   EXPECT_EQ(render.compositors, 1);
-  EXPECT_EQ(render.tile_px, 64);
   EXPECT_EQ(render.schedule, Schedule::kSquares);
   EXPECT_EQ(render.sampling, Sampling::kAdaptive);
   EXPECT_EQ(render.error, 0.5);

@@ -96,12 +96,26 @@ TEST(SampleOffset, StandsForTheCentreOfItsPixel) {
   EXPECT_EQ(position.y, 69.5f);
 }
 
+/// Every third root that can be is split, with each choice of quarters in turn.
+TileGrid with_splits(TileGrid grid) {
+  std::uint8_t quarters = 0;
+  for (std::uint32_t root = 0; root < grid.roots(); root += 3) {
+    const bool deep = grid.can_split(root, true);
+    if (grid.can_split(root, false))
+      grid.splits.push_back({root, deep ? quarters : std::uint8_t(0)});
+    quarters = static_cast<std::uint8_t>((quarters + 1) % 16);
+  }
+  return grid;
+}
+
 std::vector<TileGrid> grids() {
   std::vector<TileGrid> result;
   for (const ImageSize image :
        {ImageSize{512, 512}, {1, 1}, {100, 300}, {1920, 1080}, {16, 5000}}) {
     for (const int edge : {16, 32, 64, 256}) result.push_back(TileGrid::squares(image, edge));
     result.push_back(TileGrid::rows_of(image));
+    for (const int edge : {32, 64, 128})
+      result.push_back(with_splits(TileGrid::squares(image, edge)));
   }
   return result;
 }
@@ -113,8 +127,8 @@ TEST(TileGrid, PartitionsTheImage) {
     std::set<Place> corners;
     for (std::uint32_t i = 0; i < grid.count(); ++i) {
       const PixelRect rect = grid.rect({i});
-      EXPECT_EQ(rect.x % grid.tile.width, 0);
-      EXPECT_EQ(rect.y % grid.tile.height, 0);
+      EXPECT_EQ(rect.x % kCoarsestSpacing, 0);
+      EXPECT_EQ(rect.y % kCoarsestSpacing, 0);
       EXPECT_GT(rect.width, 0);
       EXPECT_GT(rect.height, 0);
       EXPECT_LE(rect.x + rect.width, grid.image.width);
@@ -124,6 +138,59 @@ TEST(TileGrid, PartitionsTheImage) {
     }
     EXPECT_EQ(pixels, std::int64_t(grid.image.width) * grid.image.height);
   }
+}
+
+/// Which pixels belong to which tile, one by one, is the oracle: no area, no sum can hide a gap.
+TEST(TileGrid, OfSplitRootsCoversEachPixelOnce) {
+  const TileGrid grid = with_splits(TileGrid::squares({300, 200}, 64));
+  ASSERT_FALSE(grid.splits.empty());
+  std::vector<int> covered(300 * 200);
+  for (const PixelRect& rect : grid.rects())
+    for (int y = rect.y; y < rect.y + rect.height; ++y)
+      for (int x = rect.x; x < rect.x + rect.width; ++x) ++covered[std::size_t(y * 300 + x)];
+  EXPECT_TRUE(std::all_of(covered.begin(), covered.end(), [](int times) { return times == 1; }));
+}
+
+TEST(TileGrid, NumbersTilesRootByRootAndQuarterByQuarter) {
+  TileGrid grid = TileGrid::squares({192, 128}, 64);
+  grid.splits = {{1, 0b1000}, {3, 0}};
+  const std::vector<PixelRect> expected{
+      {0, 0, 64, 64},    {64, 0, 32, 32},  {96, 0, 32, 32},   {64, 32, 32, 32}, {96, 32, 16, 16},
+      {112, 32, 16, 16}, {96, 48, 16, 16}, {112, 48, 16, 16}, {128, 0, 64, 64}, {0, 64, 32, 32},
+      {32, 64, 32, 32},  {0, 96, 32, 32},  {32, 96, 32, 32},  {64, 64, 64, 64}, {128, 64, 64, 64}};
+  EXPECT_EQ(grid.rects(), expected);
+  ASSERT_EQ(grid.count(), expected.size());
+  for (std::uint32_t i = 0; i < grid.count(); ++i) EXPECT_EQ(grid.rect({i}), expected[i]) << i;
+  EXPECT_EQ(grid.first_of_row(0), 0u);
+  EXPECT_EQ(grid.first_of_row(1), 9u);
+  EXPECT_EQ(grid.first_of_row(2), 15u);
+}
+
+TEST(TileGrid, FindsEachTileAsTheListOfAllHasIt) {
+  for (const TileGrid& grid : grids()) {
+    const auto rects = grid.rects();
+    ASSERT_EQ(rects.size(), grid.count());
+    for (std::uint32_t i = 0; i < grid.count(); ++i) ASSERT_EQ(grid.rect({i}), rects[i]);
+  }
+}
+
+TEST(TileGrid, RefusesSplitsThatAreNotSane) {
+  const auto valid = [](ImageSize image, int edge, std::vector<SplitRoot> splits) {
+    return TileGrid{image, {edge, edge}, std::move(splits)}.valid();
+  };
+  const ImageSize image{192, 130};  // 3×3 roots of 64×64, the last row clipped
+  EXPECT_TRUE(valid(image, 64, {{0, 0}, {1, 15}, {5, 7}}));
+  EXPECT_FALSE(valid(image, 64, {{0, 16}})) << "a fifth quarter";
+  EXPECT_FALSE(valid(image, 64, {{1, 0}, {1, 0}})) << "twice";
+  EXPECT_FALSE(valid(image, 64, {{2, 0}, {1, 0}})) << "out of order";
+  EXPECT_FALSE(valid(image, 64, {{9, 0}})) << "no such root";
+  EXPECT_FALSE(valid(image, 64, {{0xffffffff, 0}}));
+  EXPECT_FALSE(valid(image, 64, {{6, 0}})) << "a clipped one";
+  EXPECT_FALSE(valid(image, 16, {{0, 0}})) << "quarters of 8 pixels";
+  EXPECT_TRUE(valid(image, 32, {{0, 0}}));
+  EXPECT_FALSE(valid(image, 32, {{0, 1}})) << "quarters of quarters of 8 pixels";
+  EXPECT_FALSE(valid(image, 48, {{0, 0}})) << "quarters of 24 pixels";
+  EXPECT_FALSE(valid({0, 0}, 0, {{0, 0}}));
 }
 
 TEST(TileGrid, ClipsItsLastTiles) {
@@ -140,7 +207,9 @@ TEST(TileGrid, OfRowsHasOneTileAcross) {
 }
 
 TEST(TileGrid, RefusesSizesThatAreNotSane) {
-  const auto valid = [](ImageSize image, ImageSize tile) { return TileGrid{image, tile}.valid(); };
+  const auto valid = [](ImageSize image, ImageSize tile) {
+    return TileGrid{image, tile, {}}.valid();
+  };
   EXPECT_TRUE(valid({1, 1}, {16, 16}));
   EXPECT_TRUE(valid({16384, 16384}, {16384, 16}));
   EXPECT_FALSE(valid({0, 1}, {16, 16}));
@@ -185,9 +254,12 @@ TEST(Bands, HoldTheTilesOfTheirIndex) {
         ASSERT_GE(index, 0);
         ASSERT_LT(index, count);
         const Band band = band_of(grid, index, count);
-        const int row = static_cast<int>(i) / grid.columns();
-        EXPECT_LE(band.first_row, row);
-        EXPECT_LT(row, band.last_row);
+        const PixelRect tile = grid.rect({i}), all = band_rect(grid, band);
+        EXPECT_LE(all.y, tile.y);
+        EXPECT_LE(tile.y + tile.height, all.y + all.height);
+        const TileRange tiles = band_tiles(grid, band);
+        EXPECT_LE(tiles.first, i);
+        EXPECT_LT(i, tiles.last);
       }
     }
   }
