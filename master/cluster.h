@@ -83,7 +83,7 @@ struct ViewState {
     Rank worker;
     double seconds = 0;            ///< of processors, in all its steps
     double predicted_seconds = 0;  ///< that they were thought to take
-    TileQuality quality;
+    TileQuality quality = {};
   };
   std::vector<Tile> tiles;
   bool predicted = false;              ///< there was a last frame to predict costs by

@@ -53,7 +53,7 @@ PixelRect quarter_of(const PixelRect& whole, int quarter);
 struct TileGrid {
   ImageSize image;
   ImageSize tile;                 ///< of a root; multiples of the coarsest level's spacing
-  std::vector<SplitRoot> splits;  ///< by growing root
+  std::vector<SplitRoot> splits = {};  ///< by growing root
   bool operator==(const TileGrid&) const = default;
   static constexpr auto fields() {
     return std::tuple{&TileGrid::image, &TileGrid::tile, &TileGrid::splits};
