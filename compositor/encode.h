@@ -6,11 +6,16 @@
 #include <span>
 
 #include "common/base/types.h"
-#include "common/protocol/buffer.h"
+#include "common/protocol/messages.h"
 
 namespace goldthread {
 
 enum class Encoding : std::uint8_t { kJpeg = 1, kZstdRgb = 2 };
+
+/// How a picture is to be encoded.
+inline Encoding encoding_of(const Present& present) {
+  return present.lossless ? Encoding::kZstdRgb : Encoding::kJpeg;
+}
 
 /// `rgb`: size.width · size.height · 3 bytes, rows from the top. Throws FatalError if the library
 /// refuses, which it does only without memory.

@@ -103,7 +103,7 @@ void Cluster::begin_session() {
                                        static_cast<std::uint32_t>(topology_.compositors)});
     ++places;  // the spare tile
   }
-  scheduler_ = Scheduler(capacity);
+  scheduler_ = Scheduler(capacity, options_.tile_order(topology_.workers));
 }
 
 VolumeInfo Cluster::load_volume(const SceneVolume& volume,

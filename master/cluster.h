@@ -34,6 +34,8 @@ class Interrupted : public FatalError {
 struct ClusterOptions {
   int threads = 0;           ///< per worker; 0: the cores of its node / the workers on it
   bool interactive = false;  ///< compute threads give way to everything else
+  /// What the order of a step's tiles is, for so many workers.
+  std::function<TileOrder(int workers)> tile_order = [](int) { return TileOrder(dearest_first); };
   /// Asked while waiting for other ranks; true ends the job with Interrupted.
   std::function<bool()> interrupted = [] { return false; };
 };

@@ -2,12 +2,12 @@
 #include "master/scheduler.h"
 
 #include <algorithm>
-#include <numeric>
 #include <utility>
 
 namespace goldthread {
 
-Scheduler::Scheduler(const std::vector<int>& capacity) {
+Scheduler::Scheduler(const std::vector<int>& capacity, TileOrder order)
+    : order_(std::move(order)) {
   for (const int places : capacity) {
     Worker worker;
     worker.capacity = places;
@@ -18,6 +18,7 @@ Scheduler::Scheduler(const std::vector<int>& capacity) {
 void Scheduler::begin_view(const TileGrid& grid, const CostHistory& costs) {
   for (Worker& worker : workers_) worker.held.clear();
   tiles_.assign(grid.count(), {});
+  squared_errors_.assign(grid.count(), 0);
   step_ = Step{1};
   queue(costs);
 }
@@ -42,28 +43,20 @@ void Scheduler::queue(const CostHistory& costs) {
     worker.waiting_us = 0;
   }
   unowned_.clear();
-  std::vector<double> urgency(tiles_.size());
-  for (std::uint32_t i = 0; i < tiles_.size(); ++i) {
-    Tile& tile = tiles_[i];
+  for (const TileTurn& turn : order_(step_, squared_errors_, costs)) {
+    Tile& tile = tiles_[turn.tile.value];
     tile.done_by = -1;
     tile.again = false;
-    tile.cost_us = costs.predict_us({i}, step_);
-    tile.all_cost_us = costs.predict_all_us({i}, step_);
-    // Errors are sums over the tile: its area is in them.
-    urgency[i] = step_ == Step{1} ? tile.cost_us : tile.squared_error / std::max(tile.cost_us, 1.0);
-  }
-  std::vector<std::uint32_t> order(tiles_.size());
-  std::iota(order.begin(), order.end(), 0U);
-  std::stable_sort(order.begin(), order.end(),
-                   [&](std::uint32_t a, std::uint32_t b) { return urgency[a] > urgency[b]; });
-  for (const std::uint32_t i : order) {
-    if (tiles_[i].owner < 0) {
-      unowned_.push_back({i});
+    tile.cost_us = turn.cost_us;
+    tile.all_cost_us = turn.all_cost_us;
+    const int worker = tile.owner >= 0 ? tile.owner : turn.worker;
+    if (worker < 0 || workers_[static_cast<std::size_t>(worker)].lost) {
+      unowned_.push_back(turn.tile);
       continue;
     }
-    Worker& owner = workers_[static_cast<std::size_t>(tiles_[i].owner)];
-    owner.waiting.push_back({i});
-    owner.waiting_us += tiles_[i].cost_us;
+    Worker& owner = workers_[static_cast<std::size_t>(worker)];
+    owner.waiting.push_back(turn.tile);
+    owner.waiting_us += tile.cost_us;
   }
   open_ = tiles_.size();
 }
@@ -113,7 +106,7 @@ Finished Scheduler::done(int worker, TileId tile, Step to, double squared_error)
   if (found == held.end() || to != step_) return Finished::kNot;
   held.erase(found);
   Tile& finished = tiles_[tile.value];
-  finished.squared_error = squared_error;
+  squared_errors_[tile.value] = squared_error;
   finished.done_by = worker;
   --open_;
   return finished.again ? Finished::kAgain : Finished::kFirst;

@@ -16,6 +16,7 @@
 
 #include "common/tile/tile_grid.h"
 #include "master/cost_history.h"
+#include "master/tile_order.h"
 
 namespace goldthread {
 
@@ -37,7 +38,7 @@ enum class Finished : std::uint8_t {
 class Scheduler {
  public:
   /// `capacity[w]`: how many quanta worker w may hold at once, its spare one included.
-  explicit Scheduler(const std::vector<int>& capacity);
+  explicit Scheduler(const std::vector<int>& capacity, TileOrder order = dearest_first);
 
   /// Forgets the old view and everything in flight; the first step is open.
   void begin_view(const TileGrid& grid, const CostHistory& costs);
@@ -73,7 +74,6 @@ class Scheduler {
     int owner = -1;      ///< worker that holds its state
     int done_by = -1;    ///< that did the open step
     bool again = false;  ///< the open step was done before, by a lost worker
-    double squared_error = 0;
     double cost_us = 0;      ///< predicted, of the open step
     double all_cost_us = 0;  ///< of this and all earlier steps: what a newcomer would spend
   };
@@ -83,8 +83,10 @@ class Scheduler {
   /// What `worker` has done of the open step, which is not done any more.
   std::vector<TileId> take_back(int worker);
 
+  TileOrder order_;
   std::vector<Worker> workers_;
   std::vector<Tile> tiles_;
+  std::vector<double> squared_errors_;  ///< by tile
   std::deque<TileId> unowned_;  ///< in order
   Step step_ = kNoStep;
   std::size_t open_ = 0;

@@ -5,8 +5,6 @@
 
 #include <utility>
 
-#include "worker/refine_tile.h"
-
 namespace goldthread {
 namespace {
 
@@ -22,8 +20,9 @@ constexpr std::size_t kMostTileBytes = std::size_t{1} << 29;
 
 }  // namespace
 
-ComputePool::ComputePool(unsigned threads, bool idle_priority, std::function<void()> notify)
-    : notify_(std::move(notify)), tiles_(kMostTileBytes) {
+ComputePool::ComputePool(unsigned threads, bool idle_priority, std::function<void()> notify,
+                         TileCaster cast_tile)
+    : notify_(std::move(notify)), cast_tile_(std::move(cast_tile)), tiles_(kMostTileBytes) {
   for (unsigned i = 0; i < threads; ++i) {
     threads_.emplace_back([this, idle_priority](const std::stop_token& stop) {
       if (idle_priority) give_way();
@@ -101,7 +100,7 @@ void ComputePool::note_failure() {
 void ComputePool::cast(const CastView& view, const RenderTile& quantum,
                        std::unique_ptr<TileRefinement> tile, const std::stop_token& stop) {
   const auto begin = std::chrono::steady_clock::now();
-  auto result = refine_tile(view, quantum, std::move(tile), [&] {
+  auto result = cast_tile_(view, quantum, std::move(tile), [&] {
     return epoch_.load(std::memory_order_relaxed) != quantum.epoch.value || stop.stop_requested();
   });
   const auto cost = std::chrono::steady_clock::now() - begin;

@@ -18,6 +18,7 @@
 
 #include "common/protocol/messages.h"
 #include "worker/cast_view.h"
+#include "worker/refine_tile.h"
 #include "worker/tile_store.h"
 
 namespace goldthread {
@@ -31,7 +32,8 @@ class ComputePool {
 
   /// `threads` threads, which give way to all others if `idle_priority`; `notify` is called from
   /// them when take_done() has something to tell.
-  ComputePool(unsigned threads, bool idle_priority, std::function<void()> notify);
+  ComputePool(unsigned threads, bool idle_priority, std::function<void()> notify,
+              TileCaster cast_tile = refine_tile);
   ~ComputePool();
 
   /// From now on only quanta of `view` are cast.
@@ -53,6 +55,7 @@ class ComputePool {
             const std::stop_token& stop);
 
   std::function<void()> notify_;
+  TileCaster cast_tile_;
   mutable std::mutex mutex_;
   std::condition_variable_any pushed_;
   std::shared_ptr<const CastView> view_;

@@ -24,8 +24,10 @@ constexpr std::size_t kVisiblePoints = 64;
 
 }  // namespace
 
-WorkerRole::WorkerRole(Transport& transport, SourceMaker make_source)
-    : post_(transport), make_source_(std::move(make_source)) {}
+WorkerRole::WorkerRole(Transport& transport, SourceMaker make_source, TileCaster cast_tile)
+    : post_(transport),
+      make_source_(std::move(make_source)),
+      cast_tile_(std::move(cast_tile)) {}
 
 void WorkerRole::require(bool good, const char* what) const {
   if (good) return;
@@ -58,8 +60,8 @@ bool WorkerRole::run() {
 void WorkerRole::on(BeginSession message) {
   require(message.threads > 0 && message.compositors > 0, "was given a session without ranks");
   session_ = message;
-  pool_ =
-      std::make_unique<ComputePool>(message.threads, message.interactive, [this] { post_.wake(); });
+  pool_ = std::make_unique<ComputePool>(
+      message.threads, message.interactive, [this] { post_.wake(); }, cast_tile_);
 }
 
 void WorkerRole::on(const LoadVolume& message) {

@@ -22,7 +22,8 @@ using SourceMaker = std::function<std::shared_ptr<const SampleSource>(
 
 class WorkerRole {
  public:
-  explicit WorkerRole(Transport& transport, SourceMaker make_source = make_ray_caster);
+  explicit WorkerRole(Transport& transport, SourceMaker make_source = make_ray_caster,
+                      TileCaster cast_tile = refine_tile);
   /// Serves until the master says stop. What fails is told to the master, which ends the job. True
   /// if no rank was lost meanwhile.
   bool run();
@@ -49,6 +50,7 @@ class WorkerRole {
 
   Post post_;
   SourceMaker make_source_;
+  TileCaster cast_tile_;
   HeartbeatSender heartbeat_;
   std::optional<Stop> stop_;
   BeginSession session_;

@@ -1,9 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "common/transport/mpi_transport.h"
 
-// The deprecated C++ bindings would need a library of their own.
-#define OMPI_SKIP_MPICXX 1
-#include <mpi.h>
 #include <sys/prctl.h>
 
 #include <algorithm>
@@ -18,6 +15,7 @@
 #include <vector>
 
 #include "common/base/result.h"
+#include "common/transport/mpi_check.h"
 
 namespace goldthread {
 namespace {
@@ -30,27 +28,16 @@ constexpr std::chrono::microseconds kLongestSleep{1000};
 /// A sleep that misses its end by the kernel's default 50 µs would double the latency.
 constexpr unsigned long kTimerSlackNs = 1000;
 
-void check(int code, const char* call) {
-  if (code == MPI_SUCCESS) return;
-  char text[MPI_MAX_ERROR_STRING];
-  int length = 0;
-  MPI_Error_string(code, text, &length);
-  throw FatalError({.where = call,
-                    .what = std::string(text, static_cast<std::size_t>(length)),
-                    .mend = "check the MPI installation and the network between the hosts",
-                    .status = ExitStatus::kClusterFailed});
-}
-
 }  // namespace
 
 class MpiTransport::Impl {
  public:
   Impl() {
     int provided = 0;
-    check(MPI_Init_thread(nullptr, nullptr, MPI_THREAD_FUNNELED, &provided), "MPI_Init_thread");
+    check_mpi(MPI_Init_thread(nullptr, nullptr, MPI_THREAD_FUNNELED, &provided), "MPI_Init_thread");
     MPI_Comm_set_errhandler(MPI_COMM_WORLD, MPI_ERRORS_RETURN);
-    check(MPI_Comm_rank(MPI_COMM_WORLD, &rank_), "MPI_Comm_rank");
-    check(MPI_Comm_size(MPI_COMM_WORLD, &size_), "MPI_Comm_size");
+    check_mpi(MPI_Comm_rank(MPI_COMM_WORLD, &rank_), "MPI_Comm_rank");
+    check_mpi(MPI_Comm_size(MPI_COMM_WORLD, &size_), "MPI_Comm_size");
     receiving_.resize(static_cast<std::size_t>(size_));
     prctl(PR_SET_TIMERSLACK, kTimerSlackNs);
   }
@@ -72,7 +59,7 @@ class MpiTransport::Impl {
                         ExitStatus::kClusterFailed});
     }
     Transfer& transfer = sending_.emplace_back(Transfer{std::move(message), MPI_REQUEST_NULL});
-    check(MPI_Isend(transfer.message.data(), static_cast<int>(transfer.message.size()), MPI_BYTE,
+    check_mpi(MPI_Isend(transfer.message.data(), static_cast<int>(transfer.message.size()), MPI_BYTE,
                     to.value, kTag, MPI_COMM_WORLD, &transfer.request),
           "MPI_Isend");
   }
@@ -135,7 +122,7 @@ class MpiTransport::Impl {
   void finish_sends() {
     for (auto transfer = sending_.begin(); transfer != sending_.end();) {
       int done = 0;
-      check(MPI_Test(&transfer->request, &done, MPI_STATUS_IGNORE), "MPI_Test");
+      check_mpi(MPI_Test(&transfer->request, &done, MPI_STATUS_IGNORE), "MPI_Test");
       transfer = done != 0 ? sending_.erase(transfer) : std::next(transfer);
     }
   }
@@ -145,16 +132,16 @@ class MpiTransport::Impl {
     int found = 0;
     MPI_Message handle = MPI_MESSAGE_NULL;
     MPI_Status status;
-    check(MPI_Improbe(MPI_ANY_SOURCE, kTag, MPI_COMM_WORLD, &found, &handle, &status),
+    check_mpi(MPI_Improbe(MPI_ANY_SOURCE, kTag, MPI_COMM_WORLD, &found, &handle, &status),
           "MPI_Improbe");
     if (found == 0) return false;
     int count = 0;
-    check(MPI_Get_count(&status, MPI_BYTE, &count), "MPI_Get_count");
+    check_mpi(MPI_Get_count(&status, MPI_BYTE, &count), "MPI_Get_count");
     auto& queue = receiving_[static_cast<std::size_t>(status.MPI_SOURCE)];
     Transfer& transfer = queue.emplace_back(
         Transfer{Buffer::for_receiving(static_cast<std::size_t>(count)), MPI_REQUEST_NULL});
     ++open_receives_;
-    check(MPI_Imrecv(transfer.message.data(), count, MPI_BYTE, &handle, &transfer.request),
+    check_mpi(MPI_Imrecv(transfer.message.data(), count, MPI_BYTE, &handle, &transfer.request),
           "MPI_Imrecv");
     return true;
   }
@@ -164,7 +151,7 @@ class MpiTransport::Impl {
     auto& queue = receiving_[source];
     if (queue.empty()) return {};
     int done = 0;
-    check(MPI_Test(&queue.front().request, &done, MPI_STATUS_IGNORE), "MPI_Test");
+    check_mpi(MPI_Test(&queue.front().request, &done, MPI_STATUS_IGNORE), "MPI_Test");
     if (done == 0) return {};
     Envelope envelope{Rank{static_cast<int>(source)}, std::move(queue.front().message)};
     queue.pop_front();

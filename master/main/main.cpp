@@ -52,10 +52,11 @@ int run(const Options& options) {
     case Command::kInfo:
       return run_info(options);
     case Command::kBench:
-      return speaks() ? run_bench(options) : 0;
+      return speaks() || is_for_all_ranks(options.bench) ? run_bench(options) : 0;
     case Command::kRender:
+      return run_cluster(options, run_render);
     case Command::kServe:
-      return run_cluster(options);
+      return run_cluster(options, run_serve);
   }
   return static_cast<int>(ExitStatus::kUsage);
 }

@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "master/main/bypass.h"
+
+#include <fmt/ranges.h>
+#include <spdlog/spdlog.h>
+
+#include "worker/bypass.h"
+
+namespace goldthread {
+
+std::function<TileOrder(int workers)> tile_order_of(const Bypass& bypass) {
+  if (bypass.master) return screen_order;
+  return [](int) { return TileOrder(dearest_first); };
+}
+
+CanvasMaker canvas_of(const Bypass& bypass) {
+  return bypass.compositor ? make_bypassed_canvas : make_sample_canvas;
+}
+
+SourceMaker source_of(const Bypass& bypass) {
+  return bypass.worker ? SourceMaker(no_source) : SourceMaker(make_ray_caster);
+}
+
+TileCaster caster_of(const Bypass& bypass) {
+  return bypass.worker ? bypassed_tiles() : TileCaster(refine_tile);
+}
+
+std::vector<std::string> names_of(const Bypass& bypass) {
+  std::vector<std::string> names;
+  if (bypass.master) names.emplace_back("master");
+  if (bypass.worker) names.emplace_back("worker");
+  if (bypass.compositor) names.emplace_back("compositor");
+  return names;
+}
+
+void warn_of_bypass(const Bypass& bypass) {
+  if (bypass == Bypass{}) return;
+  spdlog::warn("by-passed: {}; pictures show nothing that was computed",
+               fmt::join(names_of(bypass), ", "));
+}
+
+}  // namespace goldthread
