@@ -50,8 +50,8 @@ class SampleCanvas final : public Canvas {
   }
 
   Buffer encoded(const Present& present, const PixelRect& rect) override {
-    const auto rgb = display_rgb8(shown(present, rect), view_.color_space);
-    return encode_pixels(rgb, {rect.width, rect.height}, encoding_of(present));
+    show(present, rect);
+    return encoder_.encode(rgb_, {rect.width, rect.height}, encoding_of(present));
   }
 
  private:
@@ -64,18 +64,28 @@ class SampleCanvas final : public Canvas {
   }
 
   /// The rows `rect` of the picture that is to be shown, filtered: each band for itself.
-  std::vector<float> shown(const Present& present, const PixelRect& rect) const {
-    auto pixels = picture(present.filter, present.moved);
+  void show(const Present& present, const PixelRect& rect) {
     const ImageSize image = view_.grid.image;
     const PixelRect band = samples_->rect();
-    if (present.size == image && present.filter != Filter::kBiquadratic) return pixels;
-    return resample(pixels, {band.width, band.height}, window_of(band, image, rect, present.size),
-                    {rect.width, rect.height}, present.filter);
+    if (present.size != image || present.filter == Filter::kBiquadratic) {
+      const auto pixels = resample(picture(present.filter, present.moved),
+                                   {band.width, band.height},
+                                   window_of(band, image, rect, present.size),
+                                   {rect.width, rect.height}, present.filter);
+      rgb_.resize(3 * (pixels.size() / 4));
+      display_rgb8(pixels, view_.color_space, rgb_);
+    } else if (in_parts()) {
+      aged_->shown(present.moved, view_.background, view_.color_space, rgb_);
+    } else {
+      reconstruct_shown(*samples_, present.filter, view_.background, view_.color_space, rgb_);
+    }
   }
 
   BeginView view_;
   std::optional<SampleArray> samples_;
-  std::optional<AgedBand> aged_;  ///< of views that are updated in parts
+  std::optional<AgedBand> aged_;   ///< of views that are updated in parts
+  std::vector<std::uint8_t> rgb_;  ///< what is shown
+  Encoder encoder_;
 };
 
 }  // namespace

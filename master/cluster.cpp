@@ -15,6 +15,9 @@ namespace {
 constexpr std::chrono::seconds kGreetingTimeout{60};
 constexpr std::chrono::milliseconds kIdleWait{50};
 constexpr std::chrono::seconds kFarewell{2};
+/// Work that each of a worker's threads has in hand: what a question to the master and its answer
+/// take where both poll with a back-off on busy cores, and a bit more.
+constexpr double kSpareUs = 500;
 
 std::string rank_name(Rank rank, const RankState& state) {
   return "rank " + std::to_string(rank.value) + (state.host.empty() ? "" : " on " + state.host);
@@ -103,7 +106,7 @@ void Cluster::begin_session() {
                                        static_cast<std::uint32_t>(topology_.compositors)});
     ++places;  // the spare tile
   }
-  scheduler_ = Scheduler(capacity, options_.tile_order(topology_.workers));
+  scheduler_ = Scheduler(capacity, options_.tile_order(topology_.workers), kSpareUs);
 }
 
 VolumeInfo Cluster::load_volume(const SceneVolume& volume,

@@ -6,8 +6,15 @@
 
 namespace goldthread {
 
-Scheduler::Scheduler(const std::vector<int>& capacity, TileOrder order)
-    : order_(std::move(order)) {
+namespace {
+
+/// Of tiles that take next to no time: what a worker's queue may grow to.
+constexpr std::size_t kMostHeld = 64;
+
+}  // namespace
+
+Scheduler::Scheduler(const std::vector<int>& capacity, TileOrder order, double spare_us)
+    : order_(std::move(order)), spare_us_(spare_us) {
   for (const int places : capacity) {
     Worker worker;
     worker.capacity = places;
@@ -16,7 +23,10 @@ Scheduler::Scheduler(const std::vector<int>& capacity, TileOrder order)
 }
 
 void Scheduler::begin_view(const TileGrid& grid, const CostHistory& costs) {
-  for (Worker& worker : workers_) worker.held.clear();
+  for (Worker& worker : workers_) {
+    worker.held.clear();
+    worker.held_us = 0;
+  }
   tiles_.assign(grid.count(), {});
   squared_errors_.assign(grid.count(), 0);
   step_ = Step{1};
@@ -31,6 +41,7 @@ void Scheduler::open_step(const CostHistory& costs) {
 void Scheduler::cancel() {
   for (Worker& worker : workers_) {
     worker.held.clear();
+    worker.held_us = 0;
     worker.waiting.clear();
   }
   unowned_.clear();
@@ -90,12 +101,23 @@ std::optional<TileId> Scheduler::take_over(int worker) {
   return tile;
 }
 
+double Scheduler::expected_us(TileId tile) const {
+  const double cost_us = tiles_[tile.value].cost_us;
+  return cost_us > 0 ? cost_us : spare_us_;
+}
+
+bool Scheduler::has_room(const Worker& worker) const {
+  if (std::cmp_less(worker.held.size(), worker.capacity)) return true;
+  return worker.held.size() < kMostHeld && worker.held_us < spare_us_ * (worker.capacity - 1);
+}
+
 std::optional<Quantum> Scheduler::next(int worker) {
   Worker& taker = workers_.at(static_cast<std::size_t>(worker));
-  if (taker.lost || std::cmp_greater_equal(taker.held.size(), taker.capacity)) return {};
+  if (taker.lost || !has_room(taker)) return {};
   const auto tile = take(worker);
   if (!tile) return {};
   taker.held.push_back(*tile);
+  taker.held_us += expected_us(*tile);
   tiles_[tile->value].owner = worker;
   return Quantum{*tile, Step{static_cast<std::uint16_t>(step_.value - 1)}, step_};
 }
@@ -105,6 +127,7 @@ Finished Scheduler::done(int worker, TileId tile, Step to, double squared_error)
   const auto found = std::find(held.begin(), held.end(), tile);
   if (found == held.end() || to != step_) return Finished::kNot;
   held.erase(found);
+  workers_[static_cast<std::size_t>(worker)].held_us -= expected_us(tile);
   Tile& finished = tiles_[tile.value];
   squared_errors_[tile.value] = squared_error;
   finished.done_by = worker;
@@ -134,6 +157,7 @@ void Scheduler::worker_lost(int worker) {
   unowned_.insert(unowned_.begin(), lost.waiting.begin(), lost.waiting.end());
   unowned_.insert(unowned_.begin(), lost.held.begin(), lost.held.end());
   lost.held.clear();
+  lost.held_us = 0;
   lost.waiting.clear();
   lost.waiting_us = 0;
   for (Tile& tile : tiles_)

@@ -37,8 +37,11 @@ enum class Finished : std::uint8_t {
 
 class Scheduler {
  public:
-  /// `capacity[w]`: how many quanta worker w may hold at once, its spare one included.
-  explicit Scheduler(const std::vector<int>& capacity, TileOrder order = dearest_first);
+  /// `capacity[w]`: how many quanta worker w may hold at once, its spare one included; more where
+  /// all that it holds will be done within `spare_us` by prediction, so that it does not wait for the
+  /// master between tiles that take less time than a message.
+  explicit Scheduler(const std::vector<int>& capacity, TileOrder order = dearest_first,
+                     double spare_us = 0);
 
   /// Forgets the old view and everything in flight; the first step is open.
   void begin_view(const TileGrid& grid, const CostHistory& costs);
@@ -67,6 +70,7 @@ class Scheduler {
     int capacity = 0;
     bool lost = false;
     std::vector<TileId> held;
+    double held_us = 0;
     std::deque<TileId> waiting;  ///< those whose state it holds, the most urgent first
     double waiting_us = 0;
   };
@@ -77,6 +81,9 @@ class Scheduler {
     double cost_us = 0;      ///< predicted, of the open step
     double all_cost_us = 0;  ///< of this and all earlier steps: what a newcomer would spend
   };
+  /// Of the open step; of a tile about which nothing is known as long as may be.
+  double expected_us(TileId tile) const;
+  bool has_room(const Worker& worker) const;
   void queue(const CostHistory& costs);
   std::optional<TileId> take(int worker);
   std::optional<TileId> take_over(int worker);
@@ -84,6 +91,7 @@ class Scheduler {
   std::vector<TileId> take_back(int worker);
 
   TileOrder order_;
+  double spare_us_;
   std::vector<Worker> workers_;
   std::vector<Tile> tiles_;
   std::vector<double> squared_errors_;  ///< by tile

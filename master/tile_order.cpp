@@ -2,8 +2,16 @@
 #include "master/tile_order.h"
 
 #include <algorithm>
+#include <limits>
 
 namespace goldthread {
+namespace {
+
+/// A stub predicts nothing, but says so: all tiles are the same, and none changes hands.
+constexpr double kOneUs = 1;
+constexpr double kNeverElsewhere = std::numeric_limits<double>::infinity();
+
+}  // namespace
 
 std::vector<TileTurn> dearest_first(Step step, std::span<const double> squared_errors,
                                     const CostHistory& costs) {
@@ -25,7 +33,7 @@ TileOrder screen_order(int workers) {
   return [workers](Step, std::span<const double> squared_errors, const CostHistory&) {
     std::vector<TileTurn> turns(squared_errors.size());
     for (std::uint32_t i = 0; i < turns.size(); ++i)
-      turns[i] = {{i}, 0, 0, static_cast<int>(i % static_cast<std::uint32_t>(workers))};
+      turns[i] = {{i}, kOneUs, kNeverElsewhere, static_cast<int>(i % std::uint32_t(workers))};
     return turns;
   };
 }

@@ -30,7 +30,7 @@ std::vector<TileTurn> dearest_first(Step step, std::span<const double> squared_e
                                     const CostHistory& costs);
 
 /// By-passes that (State et al. 1995): tiles as they lie on the screen, one for each worker in turn,
-/// and nothing predicted.
+/// all of the same cost, next to none; none changes hands unless its worker is lost.
 TileOrder screen_order(int workers);
 
 }  // namespace goldthread

@@ -106,7 +106,8 @@ void ComputePool::cast(const CastView& view, const RenderTile& quantum,
   const auto cost = std::chrono::steady_clock::now() - begin;
   busy_ns_ += std::chrono::nanoseconds(cost).count();
   if (!result) return;
-  const auto cost_us = std::chrono::duration_cast<std::chrono::microseconds>(cost).count();
+  // Rounded up: 0 would mean that nothing is known.
+  const auto cost_us = std::chrono::ceil<std::chrono::microseconds>(cost).count();
   {
     const std::lock_guard lock(mutex_);
     if (quantum.epoch != view_->epoch) return;

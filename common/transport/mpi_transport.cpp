@@ -8,7 +8,6 @@
 #include <cstdlib>
 #include <deque>
 #include <limits>
-#include <list>
 #include <mutex>
 #include <string>
 #include <thread>
@@ -58,10 +57,12 @@ class MpiTransport::Impl {
       throw FatalError({"MPI_Isend", "a message of 2 GiB or more", "use more compositors",
                         ExitStatus::kClusterFailed});
     }
-    Transfer& transfer = sending_.emplace_back(Transfer{std::move(message), MPI_REQUEST_NULL});
-    check_mpi(MPI_Isend(transfer.message.data(), static_cast<int>(transfer.message.size()), MPI_BYTE,
-                    to.value, kTag, MPI_COMM_WORLD, &transfer.request),
-          "MPI_Isend");
+    MPI_Request request = MPI_REQUEST_NULL;
+    check_mpi(MPI_Isend(message.data(), static_cast<int>(message.size()), MPI_BYTE, to.value, kTag,
+                        MPI_COMM_WORLD, &request),
+              "MPI_Isend");
+    sending_.push_back(std::move(message));
+    requests_.push_back(request);
   }
 
   std::optional<Envelope> receive() {
@@ -119,12 +120,26 @@ class MpiTransport::Impl {
     MPI_Request request;
   };
 
+  /// All at once: asking for each by itself looks at the network as often as there are messages.
   void finish_sends() {
-    for (auto transfer = sending_.begin(); transfer != sending_.end();) {
-      int done = 0;
-      check_mpi(MPI_Test(&transfer->request, &done, MPI_STATUS_IGNORE), "MPI_Test");
-      transfer = done != 0 ? sending_.erase(transfer) : std::next(transfer);
+    if (requests_.empty()) return;
+    int count = 0;
+    done_.resize(requests_.size());
+    check_mpi(MPI_Testsome(static_cast<int>(requests_.size()), requests_.data(), &count,
+                           done_.data(), MPI_STATUSES_IGNORE),
+              "MPI_Testsome");
+    if (count == 0) return;
+    std::size_t kept = 0;
+    for (std::size_t i = 0; i < requests_.size(); ++i) {
+      if (requests_[i] == MPI_REQUEST_NULL) continue;
+      if (kept != i) {
+        requests_[kept] = requests_[i];
+        sending_[kept] = std::move(sending_[i]);
+      }
+      ++kept;
     }
+    requests_.resize(kept);
+    sending_.resize(kept);
   }
 
   /// Starts to receive a message that is waiting; false if there is none.
@@ -162,7 +177,9 @@ class MpiTransport::Impl {
   bool abandoned_ = false;
   int rank_ = 0;
   int size_ = 1;
-  std::list<Transfer> sending_;
+  std::vector<Buffer> sending_;  ///< the request of each:
+  std::vector<MPI_Request> requests_;
+  std::vector<int> done_;
   std::vector<std::deque<Transfer>> receiving_;  // by source
   int open_receives_ = 0;
   std::size_t next_source_ = 0;
