@@ -43,26 +43,27 @@ std::vector<SampleOffset> changed_places(ImageSize tile, Step from, Step to,
   return changed;
 }
 
-/// What a message carries: clear samples, then their places.
+/// What a message carries: clear samples, then the places of them that are told.
 struct Payload {
   std::uint32_t count = 0;
-  std::vector<std::byte> bytes;
+  std::vector<SampleOffset> places;
+
+  Buffer packed() const {
+    const std::size_t colors = count * sizeof(Sample), told = places.size() * sizeof(SampleOffset);
+    Buffer bytes(colors + told);
+    if (colors > 0) std::memset(bytes.data(), 0, colors);
+    if (told > 0) std::memcpy(bytes.data() + colors, places.data(), told);
+    return bytes;
+  }
 };
 
 Payload payload_of(const CastView& view, const RenderTile& quantum) {
   const PixelRect rect = view.grid.rect(quantum.tile);
-  if (view.update != Update::kAll) {
-    const std::size_t count = places_of(rect, view.update, view.part).size();
-    return {static_cast<std::uint32_t>(count), std::vector<std::byte>(count * sizeof(Sample))};
-  }
-  const auto places =
+  if (view.update != Update::kAll)
+    return {static_cast<std::uint32_t>(places_of(rect, view.update, view.part).size()), {}};
+  auto places =
       changed_places({rect.width, rect.height}, quantum.from, quantum.to, view.refinement);
-  const std::size_t colors = places.size() * sizeof(Sample);
-  const std::size_t offsets = places.size() * sizeof(SampleOffset);
-  Payload payload{static_cast<std::uint32_t>(places.size()),
-                  std::vector<std::byte>(colors + offsets)};
-  if (offsets > 0) std::memcpy(payload.bytes.data() + colors, places.data(), offsets);
-  return payload;
+  return {static_cast<std::uint32_t>(places.size()), std::move(places)};
 }
 
 /// Shared by a worker's threads.
@@ -70,8 +71,13 @@ class PayloadStore {
  public:
   std::shared_ptr<const Payload> of(const CastView& view, const RenderTile& quantum) {
     const PixelRect rect = view.grid.rect(quantum.tile);
-    const Key key{rect.width,          rect.height,    view.update, view.part, quantum.from,
-                  quantum.to, view.refinement.most_samples};
+    const Key key{rect.width,
+                  rect.height,
+                  view.update,
+                  view.part,
+                  quantum.from,
+                  quantum.to,
+                  view.refinement.most_samples};
     const std::lock_guard lock(mutex_);
     auto& payload = payloads_[key];
     if (!payload) payload = std::make_shared<const Payload>(payload_of(view, quantum));
@@ -100,9 +106,7 @@ TileCaster bypassed_tiles() {
     const auto payload = store->of(view, quantum);
     RefinedTile result;
     result.samples = {quantum.epoch, quantum.tile,   quantum.from,
-                      quantum.to,    payload->count, Buffer(payload->bytes.size())};
-    if (!payload->bytes.empty())
-      std::memcpy(result.samples.packed.data(), payload->bytes.data(), payload->bytes.size());
+                      quantum.to,    payload->count, payload->packed()};
     result.counts.rays = payload->count;
     result.tile = std::move(tile);
     return result;

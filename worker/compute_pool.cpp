@@ -3,6 +3,7 @@
 
 #include <sched.h>
 
+#include <algorithm>
 #include <utility>
 
 namespace goldthread {
@@ -44,13 +45,17 @@ void ComputePool::begin_view(std::shared_ptr<const CastView> view) {
   tiles_.clear();
 }
 
-void ComputePool::push(const RenderTile& quantum) {
+void ComputePool::push(std::span<const RenderTile> quanta) {
+  std::size_t count = 0;
   {
     const std::lock_guard lock(mutex_);
-    if (!view_ || quantum.epoch != view_->epoch) return;
-    queue_.push_back(quantum);
+    for (const RenderTile& quantum : quanta) {
+      if (!view_ || quantum.epoch != view_->epoch) continue;
+      queue_.push_back(quantum);
+      ++count;
+    }
   }
-  pushed_.notify_one();
+  for (std::size_t i = 0; i < std::min(count, threads_.size()); ++i) pushed_.notify_one();
 }
 
 std::vector<ComputePool::Done> ComputePool::take_done() {
@@ -108,16 +113,18 @@ void ComputePool::cast(const CastView& view, const RenderTile& quantum,
   if (!result) return;
   // Rounded up: 0 would mean that nothing is known.
   const auto cost_us = std::chrono::ceil<std::chrono::microseconds>(cost).count();
+  bool first = false;
   {
     const std::lock_guard lock(mutex_);
     if (quantum.epoch != view_->epoch) return;
+    first = outbox_.empty();
     if (result->tile) tiles_.put(quantum.tile, std::move(result->tile));
     outbox_.push_back(
         {std::move(result->samples),
          {quantum.epoch, quantum.tile, quantum.to, static_cast<std::uint32_t>(cost_us),
           result->counts.rays, result->counts.samples, result->quality}});
   }
-  notify_();
+  if (first) notify_();  // of the others it will hear when it comes for this one
 }
 
 }  // namespace goldthread

@@ -13,6 +13,7 @@
 #include <memory>
 #include <mutex>
 #include <optional>
+#include <span>
 #include <thread>
 #include <vector>
 
@@ -38,8 +39,9 @@ class ComputePool {
 
   /// From now on only quanta of `view` are cast.
   void begin_view(std::shared_ptr<const CastView> view);
-  /// Of another epoch than the view's: ignored.
-  void push(const RenderTile& quantum);
+  /// Of another epoch than the view's: ignored. Several at once wake the threads once.
+  void push(std::span<const RenderTile> quanta);
+  void push(const RenderTile& quantum) { push({&quantum, 1}); }
   /// What was finished since the last call; never of a stale epoch. Throws what a thread failed
   /// with, once.
   std::vector<Done> take_done();

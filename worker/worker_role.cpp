@@ -19,15 +19,15 @@ namespace {
 constexpr std::chrono::milliseconds kIdleWait{50};
 constexpr std::chrono::seconds kFarewell{2};
 constexpr std::chrono::milliseconds kLoadingWait{20};
+/// That threads may be left to wait for while messages keep coming.
+constexpr std::size_t kMostQuanta = 16;
 /// That the master measures a camera's movement by.
 constexpr std::size_t kVisiblePoints = 64;
 
 }  // namespace
 
 WorkerRole::WorkerRole(Transport& transport, SourceMaker make_source, TileCaster cast_tile)
-    : post_(transport),
-      make_source_(std::move(make_source)),
-      cast_tile_(std::move(cast_tile)) {}
+    : post_(transport), make_source_(std::move(make_source)), cast_tile_(std::move(cast_tile)) {}
 
 void WorkerRole::require(bool good, const char* what) const {
   if (good) return;
@@ -44,7 +44,9 @@ bool WorkerRole::run() {
       while (auto message = post_.receive<ToWorker>()) {
         std::visit([&](auto& value) { on(std::move(value)); }, message->second);
         heartbeat_.beat(post_);  // also when messages never end
+        if (quanta_.size() >= kMostQuanta) push_quanta();
       }
+      push_quanta();
       finish_loading();
       send_done();
       heartbeat_.beat(post_);
@@ -134,7 +136,13 @@ void WorkerRole::on(const RenderTile& message) {
   if (!view_ || message.epoch != view_->epoch) return;
   require(message.tile.value < view_->grid.count() && is_step(message.from, message.to),
           "was given a tile or step that its view does not have");
-  pool_->push(message);
+  quanta_.push_back(message);
+}
+
+/// What came at once is handed over at once: waking a thread takes as long as a quick tile.
+void WorkerRole::push_quanta() {
+  if (!quanta_.empty()) pool_->push(quanta_);
+  quanta_.clear();
 }
 
 void WorkerRole::send_done() {

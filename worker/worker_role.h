@@ -8,6 +8,7 @@
 #include <future>
 #include <memory>
 #include <optional>
+#include <vector>
 
 #include "common/transport/heartbeat.h"
 #include "common/transport/post.h"
@@ -39,6 +40,7 @@ class WorkerRole {
   void on(const Stop& message);
   /// Throws FatalError unless what the master sent makes sense.
   void require(bool good, const char* what) const;
+  void push_quanta();
   void send_done();
   void finish_loading();
 
@@ -61,6 +63,7 @@ class WorkerRole {
   std::uint32_t revision_ = 0;
   std::shared_ptr<const CommittedScene> scene_;
   std::optional<BeginView> view_;
+  std::vector<RenderTile> quanta_;  ///< of the view, that the threads do not know of yet
   std::unique_ptr<ComputePool> pool_;
 };
 

@@ -153,7 +153,7 @@ std::string throughput_markdown(const ThroughputReport& report) {
   for (const Section& section : throughput_sections(report)) {
     text += fmt::format("\n### {}\n", section.title);
     if (!section.note.empty()) text += section.note + "\n";
-    text += "\n" + as_markdown(section.table);
+    text += fmt::format("\n{}", as_markdown(section.table));
   }
   return text;
 }

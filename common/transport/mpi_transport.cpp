@@ -24,6 +24,9 @@ constexpr int kTag = 1;
 /// interaction, long enough to leave the cores to the ranks that compute.
 constexpr std::chrono::microseconds kShortestSleep{20};
 constexpr std::chrono::microseconds kLongestSleep{1000};
+/// While transfers are under way and one has ended within so long, the next will soon: to sleep
+/// would leave the network idle. Others may have the core meanwhile.
+constexpr std::chrono::microseconds kFlow{30};
 /// A sleep that misses its end by the kernel's default 50 µs would double the latency.
 constexpr unsigned long kTimerSlackNs = 1000;
 
@@ -89,9 +92,16 @@ class MpiTransport::Impl {
     if (!to_self_.empty()) return;
     // While a transfer is under way only polling moves it on.
     const bool busy = !sending_.empty() || open_receives_ > 0;
-    const auto length = std::min(at_most, busy ? kShortestSleep : sleep_);
+    if (busy) {
+      // Not to be woken: what the others have meanwhile is more than one thing.
+      if (std::chrono::steady_clock::now() - last_end_ < kFlow)
+        std::this_thread::yield();
+      else
+        std::this_thread::sleep_for(std::min(at_most, kShortestSleep));
+      return;
+    }
     std::unique_lock lock(mutex_);
-    if (woken_changed_.wait_for(lock, length, [&] { return woken_; }))
+    if (woken_changed_.wait_for(lock, std::min(at_most, sleep_), [&] { return woken_; }))
       sleep_ = kShortestSleep;
     else
       sleep_ = std::min(sleep_ * 5 / 4, kLongestSleep);
@@ -129,6 +139,7 @@ class MpiTransport::Impl {
                            done_.data(), MPI_STATUSES_IGNORE),
               "MPI_Testsome");
     if (count == 0) return;
+    last_end_ = std::chrono::steady_clock::now();
     std::size_t kept = 0;
     for (std::size_t i = 0; i < requests_.size(); ++i) {
       if (requests_[i] == MPI_REQUEST_NULL) continue;
@@ -148,7 +159,7 @@ class MpiTransport::Impl {
     MPI_Message handle = MPI_MESSAGE_NULL;
     MPI_Status status;
     check_mpi(MPI_Improbe(MPI_ANY_SOURCE, kTag, MPI_COMM_WORLD, &found, &handle, &status),
-          "MPI_Improbe");
+              "MPI_Improbe");
     if (found == 0) return false;
     int count = 0;
     check_mpi(MPI_Get_count(&status, MPI_BYTE, &count), "MPI_Get_count");
@@ -157,7 +168,7 @@ class MpiTransport::Impl {
         Transfer{Buffer::for_receiving(static_cast<std::size_t>(count)), MPI_REQUEST_NULL});
     ++open_receives_;
     check_mpi(MPI_Imrecv(transfer.message.data(), count, MPI_BYTE, &handle, &transfer.request),
-          "MPI_Imrecv");
+              "MPI_Imrecv");
     return true;
   }
 
@@ -168,6 +179,7 @@ class MpiTransport::Impl {
     int done = 0;
     check_mpi(MPI_Test(&queue.front().request, &done, MPI_STATUS_IGNORE), "MPI_Test");
     if (done == 0) return {};
+    last_end_ = std::chrono::steady_clock::now();
     Envelope envelope{Rank{static_cast<int>(source)}, std::move(queue.front().message)};
     queue.pop_front();
     --open_receives_;
@@ -184,6 +196,7 @@ class MpiTransport::Impl {
   int open_receives_ = 0;
   std::size_t next_source_ = 0;
   std::deque<Envelope> to_self_;
+  std::chrono::steady_clock::time_point last_end_;  ///< of a transfer
   std::chrono::microseconds sleep_ = kShortestSleep;
 
   std::mutex mutex_;
