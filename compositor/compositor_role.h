@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 // A compositor rank: has the samples of its band kept (canvas.h), tells the master when it has
-// taken a step, and has it encoded when told to. The first one also runs the gateway, through which input reaches the
-// master and pictures reach the pages. Knows neither how a sample came to be nor who asked for it.
+// taken a step, and has it encoded when told to. The first one also runs the gateway, through which
+// input reaches the master and pictures reach the pages. Knows neither how a sample came to be nor
+// who asked for it.
 
 #include <memory>
 #include <optional>

@@ -44,8 +44,8 @@ Buffer jpeg(tjhandle compressor, std::span<const std::uint8_t> rgb, ImageSize si
 
 Buffer zstd(ZSTD_CCtx* context, std::span<const std::uint8_t> rgb) {
   Buffer bytes(ZSTD_compressBound(rgb.size()));
-  const std::size_t length = ZSTD_compressCCtx(context, bytes.data(), bytes.size(), rgb.data(),
-                                               rgb.size(), kZstdLevel);
+  const std::size_t length =
+      ZSTD_compressCCtx(context, bytes.data(), bytes.size(), rgb.data(), rgb.size(), kZstdLevel);
   if (ZSTD_isError(length) != 0) fail("ZSTD_compressCCtx", ZSTD_getErrorName(length));
   bytes.truncate(length);
   return bytes;

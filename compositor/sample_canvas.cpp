@@ -68,10 +68,9 @@ class SampleCanvas final : public Canvas {
     const ImageSize image = view_.grid.image;
     const PixelRect band = samples_->rect();
     if (present.size != image || present.filter == Filter::kBiquadratic) {
-      const auto pixels = resample(picture(present.filter, present.moved),
-                                   {band.width, band.height},
-                                   window_of(band, image, rect, present.size),
-                                   {rect.width, rect.height}, present.filter);
+      const auto pixels = resample(
+          picture(present.filter, present.moved), {band.width, band.height},
+          window_of(band, image, rect, present.size), {rect.width, rect.height}, present.filter);
       rgb_.resize(3 * (pixels.size() / 4));
       display_rgb8(pixels, view_.color_space, rgb_);
     } else if (in_parts()) {

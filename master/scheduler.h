@@ -38,8 +38,8 @@ enum class Finished : std::uint8_t {
 class Scheduler {
  public:
   /// `capacity[w]`: how many quanta worker w may hold at once, its spare one included; more where
-  /// all that it holds will be done within `spare_us` by prediction, so that it does not wait for the
-  /// master between tiles that take less time than a message.
+  /// all that it holds will be done within `spare_us` by prediction, so that it does not wait for
+  /// the master between tiles that take less time than a message.
   explicit Scheduler(const std::vector<int>& capacity, TileOrder order = dearest_first,
                      double spare_us = 0);
 
@@ -75,9 +75,9 @@ class Scheduler {
     double waiting_us = 0;
   };
   struct Tile {
-    int owner = -1;      ///< worker that holds its state
-    int done_by = -1;    ///< that did the open step
-    bool again = false;  ///< the open step was done before, by a lost worker
+    int owner = -1;          ///< worker that holds its state
+    int done_by = -1;        ///< that did the open step
+    bool again = false;      ///< the open step was done before, by a lost worker
     double cost_us = 0;      ///< predicted, of the open step
     double all_cost_us = 0;  ///< of this and all earlier steps: what a newcomer would spend
   };
@@ -95,7 +95,7 @@ class Scheduler {
   std::vector<Worker> workers_;
   std::vector<Tile> tiles_;
   std::vector<double> squared_errors_;  ///< by tile
-  std::deque<TileId> unowned_;  ///< in order
+  std::deque<TileId> unowned_;          ///< in order
   Step step_ = kNoStep;
   std::size_t open_ = 0;
 };

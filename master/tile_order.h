@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// What the master computes of a step before it hands out its tiles: in which order they go, and what
-// they will cost. Pure.
+// What the master computes of a step before it hands out its tiles: in which order they go, and
+// what they will cost. Pure.
 
 #include <functional>
 #include <span>
@@ -17,7 +17,7 @@ struct TileTurn {
   TileId tile;
   double cost_us = 0;      ///< predicted, of the step; 0: unknown
   double all_cost_us = 0;  ///< of this and all earlier steps
-  int worker = -1;         ///< that is to have it, where none holds its state; −1: who comes first
+  int worker = -1;  ///< that is to have it, where none holds its state; −1: who comes first
 };
 
 /// All tiles once, those that go out first in front. `squared_errors`, by tile, are sums over a
@@ -29,8 +29,8 @@ using TileOrder = std::function<std::vector<TileTurn>(
 std::vector<TileTurn> dearest_first(Step step, std::span<const double> squared_errors,
                                     const CostHistory& costs);
 
-/// By-passes that (State et al. 1995): tiles as they lie on the screen, one for each worker in turn,
-/// all of the same cost, next to none; none changes hands unless its worker is lost.
+/// By-passes that (State et al. 1995): tiles as they lie on the screen, one for each worker in
+/// turn, all of the same cost, next to none; none changes hands unless its worker is lost.
 TileOrder screen_order(int workers);
 
 }  // namespace goldthread

@@ -115,8 +115,7 @@ BackEndRow measure(const BeginView& view, const std::vector<Samples>& samples, c
     AgedBand aged(view, band);
     aged.begin_view(view.epoch, view.frame);
     for (const Samples& message : samples) aged.place(message);
-    row.shown =
-        time_of(repeats, [&] { aged.shown({}, view.background, view.color_space, rgb); });
+    row.shown = time_of(repeats, [&] { aged.shown({}, view.background, view.color_space, rgb); });
   }
   Encoder encoder;
   row.jpeg = time_of(repeats, [&] { encoder.encode(rgb, size, Encoding::kJpeg); });

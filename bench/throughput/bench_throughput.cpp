@@ -125,8 +125,8 @@ ThroughputReport run_throughput_bench(const Subject& subject,
   report.master = measurements.rows("the master alone", master_setups(quick), false);
   report.back_end = measurements.rows("the back end alone", back_end_setups(quick), false);
   settings.progress("the parts of the back end", 0);
-  report.parts = measure_back_end(subject, kBackEndSize,
-                                  quick ? kQuickBackEndRepeats : kBackEndRepeats);
+  report.parts =
+      measure_back_end(subject, kBackEndSize, quick ? kQuickBackEndRepeats : kBackEndRepeats);
   return report;
 }
 

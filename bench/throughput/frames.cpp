@@ -76,9 +76,9 @@ std::vector<double> back_to_back(Cluster& cluster, FrameDriver& driver,
   for (int i = 0; i < kWarmUp; ++i) driver.run(lossless);
   std::vector<double> seconds;
   const auto begin = Clock::now();
-  for (auto last = begin; seconds.size() < kMostFrames &&
-                          (std::cmp_less(seconds.size(), request.least_frames) ||
-                           last - begin < request.least_time);) {
+  for (auto last = begin;
+       seconds.size() < kMostFrames && (std::cmp_less(seconds.size(), request.least_frames) ||
+                                        last - begin < request.least_time);) {
     driver.run(lossless);
     const auto now = Clock::now();
     seconds.push_back(std::chrono::duration<double>(now - last).count());

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 // Frames back to back through a whole cluster: views of which each pixel is cast once, the next one
-// begun the moment the compositors hold all of the last, each of them shown. Which roles compute and
-// which are by-passed is not known here.
+// begun the moment the compositors hold all of the last, each of them shown. Which roles compute
+// and which are by-passed is not known here.
 
 #include <chrono>
 #include <string>
@@ -29,8 +29,8 @@ struct PacedFrames {
 };
 
 struct FramesResult {
-  std::uint32_t tiles = 0;              ///< of a frame
-  std::vector<double> seconds;          ///< between frames, each shown as a JPEG
+  std::uint32_t tiles = 0;               ///< of a frame
+  std::vector<double> seconds;           ///< between frames, each shown as a JPEG
   std::vector<double> lossless_seconds;  ///< likewise without loss
   double master_cpu_seconds = 0;         ///< in all of these
   double sample_bytes = 0;     ///< of the messages with a frame's samples, headers included

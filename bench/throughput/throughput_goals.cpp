@@ -31,10 +31,10 @@ void add_share(const ThroughputReport& report, Carrier carrier, std::vector<Goal
     if (row.setup.carrier != carrier || row.setup.size.width < kShareFrom || !share) continue;
     least = std::min(least.value_or(*share), *share);
   }
-  goals.push_back(at_least(
-      fmt::format("sample bytes per second of those of MPI alone, {}×{} and above, {}", kShareFrom,
-                  kShareFrom, name_of(carrier)),
-      kShare, least));
+  goals.push_back(
+      at_least(fmt::format("sample bytes per second of those of MPI alone, {}×{} and above, {}",
+                           kShareFrom, kShareFrom, name_of(carrier)),
+               kShare, least));
 }
 
 void add_master(const ThroughputReport& report, std::vector<Goal>& goals) {

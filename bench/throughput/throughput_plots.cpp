@@ -66,9 +66,8 @@ Plot bypassed_plot(const ThroughputReport& report) {
     const double side = row.setup.size.width;
     curves.add(name_of(carrier), solid(color_of(carrier), 7), side, row.frames_per_second());
     if (row.stream && row.frames.sample_bytes > 0)
-      curves.add(fmt::format("{}, without Goldthread", name_of(carrier)),
-                 dashed(color_of(carrier)), side,
-                 row.stream->bytes_per_second() / row.frames.sample_bytes);
+      curves.add(fmt::format("{}, without Goldthread", name_of(carrier)), dashed(color_of(carrier)),
+                 side, row.stream->bytes_per_second() / row.frames.sample_bytes);
   }
   const char* const name = "everything-bypassed";
   return {name, script_of(name, "Everything by-passed", "as VOL2's figure 4; one worker", kSides,
@@ -78,8 +77,8 @@ Plot bypassed_plot(const ThroughputReport& report) {
 Plot master_plot(const ThroughputReport& report) {
   Curves curves;
   for (const FramesRow& row : report.master) {
-    const std::string tiles = fmt::format("{} tiles, {}", row.frames.tiles,
-                                          name_of(row.setup.carrier));
+    const std::string tiles =
+        fmt::format("{} tiles, {}", row.frames.tiles, name_of(row.setup.carrier));
     const int point = row.setup.tile_px < 64 ? 5 : 7;
     curves.add(tiles, solid(color_of(row.setup.carrier), point), row.setup.workers,
                row.frames_per_second());
@@ -95,8 +94,8 @@ Plot back_end_plot(const ThroughputReport& report) {
   Curves curves;
   for (const FramesRow& row : report.back_end) {
     const double side = row.setup.size.width;
-    const std::string slabs = row.setup.slabs == 1 ? "replicated"
-                                                   : fmt::format("{} slabs", row.setup.slabs);
+    const std::string slabs =
+        row.setup.slabs == 1 ? "replicated" : fmt::format("{} slabs", row.setup.slabs);
     const std::string which = fmt::format("{}, {}", slabs, name_of(row.setup.carrier));
     const char* const color = color_of(row.setup.carrier);
     curves.add(which + ", JPEG", solid(color, 7), side, row.frames_per_second());

@@ -39,12 +39,12 @@ Section bypassed_section(const ThroughputReport& report) {
        {}}};
   for (const FramesRow& row : report.bypassed) {
     const auto share = row.share_of_stream();
-    section.table.rows.push_back(
-        {name_of(row.setup.carrier), size_of(row.setup), number(row.frames_per_second()),
-         spread_of(row.frames.seconds), number(row.tiles_per_second()),
-         megabytes(row.sample_bytes_per_second()),
-         row.stream ? megabytes(row.stream->bytes_per_second()) : "–",
-         share ? number(*share) : "–"});
+    section.table.rows.push_back({name_of(row.setup.carrier), size_of(row.setup),
+                                  number(row.frames_per_second()), spread_of(row.frames.seconds),
+                                  number(row.tiles_per_second()),
+                                  megabytes(row.sample_bytes_per_second()),
+                                  row.stream ? megabytes(row.stream->bytes_per_second()) : "–",
+                                  share ? number(*share) : "–"});
   }
   return section;
 }
@@ -78,10 +78,10 @@ Section back_end_section(const ThroughputReport& report) {
       {{"<carried by", "pixels", "slabs", "JPEG frames/s", "spread", "lossless frames/s", "spread"},
        {}}};
   for (const FramesRow& row : report.back_end)
-    section.table.rows.push_back(
-        {name_of(row.setup.carrier), size_of(row.setup), std::to_string(row.setup.slabs),
-         number(row.frames_per_second()), spread_of(row.frames.seconds),
-         number(row.lossless_per_second()), spread_of(row.frames.lossless_seconds)});
+    section.table.rows.push_back({name_of(row.setup.carrier), size_of(row.setup),
+                                  std::to_string(row.setup.slabs), number(row.frames_per_second()),
+                                  spread_of(row.frames.seconds), number(row.lossless_per_second()),
+                                  spread_of(row.frames.lossless_seconds)});
   return section;
 }
 

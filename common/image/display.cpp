@@ -42,8 +42,8 @@ void display(std::span<const float> rgba, std::uint8_t* rgb) {
   std::memcpy(rgb + 3 * (pixels - 1), &last, 3);
 }
 
-/// sRGB's curve and the rounding to 8 bits, of all floats from 0 to 1, by the thresholds between the
-/// 256 levels. They are found by asking the curve itself, so that the results are the same.
+/// sRGB's curve and the rounding to 8 bits, of all floats from 0 to 1, by the thresholds between
+/// the 256 levels. They are found by asking the curve itself, so that the results are the same.
 class SrgbLevels {
  public:
   SrgbLevels() {

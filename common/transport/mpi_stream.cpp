@@ -94,8 +94,8 @@ std::vector<double> time_mpi_stream(const MpiStream& stream) {
     } else if (rank > 0) {
       keep_going(to_receive(stream, rank - 1, senders), stream.message_bytes,
                  [&](int, std::byte* data, MPI_Request& request) {
-                   check_mpi(MPI_Irecv(data, bytes, MPI_BYTE, MPI_ANY_SOURCE, kTag,
-                                       MPI_COMM_WORLD, &request),
+                   check_mpi(MPI_Irecv(data, bytes, MPI_BYTE, MPI_ANY_SOURCE, kTag, MPI_COMM_WORLD,
+                                       &request),
                              "MPI_Irecv");
                  });
     }

@@ -16,10 +16,8 @@ struct BenchSubject {
   bool all_ranks = false;  ///< of an MPI job take part
 };
 constexpr BenchSubject kSubjects[] = {
-    {"error", run_error_bench},
-    {"motion", run_motion_bench},
-    {"throughput", run_throughput_bench},
-    {"frames", run_frames_bench, true},
+    {"error", run_error_bench},           {"motion", run_motion_bench},
+    {"throughput", run_throughput_bench}, {"frames", run_frames_bench, true},
     {"stream", run_stream_bench, true},
 };
 

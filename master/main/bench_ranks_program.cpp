@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// `goldthread bench frames` and `goldthread bench stream`: what the bench of throughput starts under
-// mpirun, in every rank. What the master finds goes into the folder.
+// `goldthread bench frames` and `goldthread bench stream`: what the bench of throughput starts
+// under mpirun, in every rank. What the master finds goes into the folder.
 
 #include <algorithm>
 #include <string>

@@ -4,6 +4,7 @@
 #include <fmt/ranges.h>
 #include <spdlog/spdlog.h>
 
+#include "master/names.h"
 #include "worker/bypass.h"
 
 namespace goldthread {
@@ -27,9 +28,9 @@ TileCaster caster_of(const Bypass& bypass) {
 
 std::vector<std::string> names_of(const Bypass& bypass) {
   std::vector<std::string> names;
-  if (bypass.master) names.emplace_back("master");
-  if (bypass.worker) names.emplace_back("worker");
-  if (bypass.compositor) names.emplace_back("compositor");
+  if (bypass.master) names.emplace_back(role_name(Role::kMaster));
+  if (bypass.worker) names.emplace_back(role_name(Role::kWorker));
+  if (bypass.compositor) names.emplace_back(role_name(Role::kCompositor));
   return names;
 }
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// --bypass: which roles get stubs in place of what they compute. Every message stays (VOL2's lesson:
-// so the bottleneck of a parallel renderer is found).
+// --bypass: which roles get stubs in place of what they compute. Every message stays (VOL2's
+// lesson: so the bottleneck of a parallel renderer is found).
 
 #include <functional>
 #include <string>

@@ -70,7 +70,8 @@ RoleEnd run_role(Transport& transport, Topology topology, const Options& options
     case Role::kCompositor:
       return {{}, CompositorRole(transport, canvas_of(options.bypass)).run()};
     case Role::kWorker:
-      return {{}, WorkerRole(transport, source_of(options.bypass), caster_of(options.bypass)).run()};
+      return {{},
+              WorkerRole(transport, source_of(options.bypass), caster_of(options.bypass)).run()};
   }
   return {};
 }

@@ -19,7 +19,8 @@ int run_cluster(const Options& options, ClusterJob job);
 /// Runs `info`.
 int run_info(const Options& options);
 
-/// Runs `bench`: the subject that the options name. Of an MPI job most have work for one rank alone.
+/// Runs `bench`: the subject that the options name. Of an MPI job most have work for one rank
+/// alone.
 int run_bench(const Options& options);
 bool is_for_all_ranks(const BenchOptions& bench);
 int run_error_bench(const Options& options);

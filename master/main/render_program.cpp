@@ -78,8 +78,7 @@ void write_report(Cluster& cluster, const Options& options, const std::vector<Vi
   const std::string& path = *options.report;
   cluster.request_counters();
   while (!cluster.counters_complete()) cluster.poll(std::chrono::milliseconds(20));
-  const std::string report = 
-      report_json(cluster, frames, load_seconds, names_of(options.bypass));
+  const std::string report = report_json(cluster, frames, load_seconds, names_of(options.bypass));
   if (!is_stream(path)) {
     write_whole_file(path, {reinterpret_cast<const unsigned char*>(report.data()), report.size()});
     return;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Both canvases take the same samples: what is told of steps and sizes is the same, what is shown is
-// not.
+// Both canvases take the same samples: what is told of steps and sizes is the same, what is shown
+// is not.
 
 #include "compositor/canvas.h"
 
@@ -83,15 +83,13 @@ TEST(Canvas, PicturesHaveTheSameSizeAndTheStubsIsBlack) {
   std::vector<std::vector<std::uint8_t>> shown;
   for (Canvas* canvas : {real.get(), stub.get()}) {
     canvas->begin_view(view_of(), band_of(kGrid, 0, 1));
-    for (std::uint32_t i = 0; i < kGrid.count(); ++i)
-      canvas->place(grey({i}, kNoStep, kPixelStep));
+    for (std::uint32_t i = 0; i < kGrid.count(); ++i) canvas->place(grey({i}, kNoStep, kPixelStep));
     EXPECT_EQ(canvas->pixels(Filter::kBilinear).size(), 200u * 140 * 4 * sizeof(float));
     // Twice: what is kept from one picture to the next must not be seen.
     canvas->encoded(present, whole);
     const Buffer bytes = canvas->encoded(present, whole);
     std::vector<std::uint8_t> rgb(200 * 140 * 3 + 1);
-    const std::size_t length =
-        ZSTD_decompress(rgb.data(), rgb.size(), bytes.data(), bytes.size());
+    const std::size_t length = ZSTD_decompress(rgb.data(), rgb.size(), bytes.data(), bytes.size());
     EXPECT_EQ(length, rgb.size() - 1);
     rgb.pop_back();
     shown.push_back(std::move(rgb));

@@ -50,8 +50,8 @@ TEST(BypassedTiles, AnswersEachStepAsOneRayInEachPixelWould) {
       for (std::uint16_t from = 0; from < 6; ++from)
         for (std::uint16_t to = static_cast<std::uint16_t>(from + 1); to <= 6; ++to) {
           const RenderTile quantum{{7}, {tile}, {from}, {to}};
-          SCOPED_TRACE(testing::Message() << "tile " << tile << ", " << from << " to " << to
-                                          << ", at most " << most);
+          SCOPED_TRACE(testing::Message()
+                       << "tile " << tile << ", " << from << " to " << to << ", at most " << most);
           const auto real = refine_tile(view, quantum, nullptr, kWanted);
           const auto answer = stub(view, quantum, nullptr, kWanted);
           ASSERT_TRUE(real && answer);

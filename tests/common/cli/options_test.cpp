@@ -328,9 +328,8 @@ TEST(CommandLine, ABenchNeedsASubject) {
 
 TEST(CommandLine, ABenchOfRanksIsToldWhichThereAre) {
   for (const std::string subject : {"frames", "stream"}) {
-    const Options read =
-        options({"bench", subject, "-o", "dir", "--bypass", "worker", "--workers", "3",
-                 "--compositors", "2", "--tile", "32"});
+    const Options read = options({"bench", subject, "-o", "dir", "--bypass", "worker", "--workers",
+                                  "3", "--compositors", "2", "--tile", "32"});
     EXPECT_EQ(read.bench.subject, subject);
     EXPECT_TRUE(read.bypass.worker);
     EXPECT_EQ(read.workers, 3);

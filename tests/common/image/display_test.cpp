@@ -68,9 +68,8 @@ TEST(Display, IsTheCurveAndTheRoundingExactlyAroundEachThreshold) {
         ASSERT_EQ(shown(value, space), exact(value)) << value;
       }
     };
-    around(middle, ColorSpace::kDisplay, [](float value) {
-      return static_cast<int>(std::lround(std::min(value, 1.0f) * 255));
-    });
+    around(middle, ColorSpace::kDisplay,
+           [](float value) { return static_cast<int>(std::lround(std::min(value, 1.0f) * 255)); });
     around(linear_from_srgb(middle), ColorSpace::kLinear,
            [](float value) { return int{to_8_bits(srgb_from_linear(double(value)))}; });
   }
