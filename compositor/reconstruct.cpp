@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "compositor/reconstruct.h"
 
-#include <algorithm>
+#include <cstdint>
 #include <cstring>
 
 #include "common/image/display.h"
@@ -11,14 +11,15 @@ namespace goldthread {
 namespace {
 
 using Lanes = float __attribute__((vector_size(16)));
+using Mask = std::int32_t __attribute__((vector_size(16)));
+constexpr Mask kColors{-1, -1, -1, 0};
 
 /// Puts a row of samples over the background.
 void over(std::span<const Sample> row, const Lanes& behind, float* pixels) {
   for (const Sample& sample : row) {
     Lanes color;
     std::memcpy(&color, &sample, sizeof color);
-    color += (1 - sample.alpha) * behind;
-    color[3] = sample.alpha;
+    color = kColors ? color + (1 - sample.alpha) * behind : color;
     std::memcpy(pixels, &color, sizeof color);
     pixels += 4;
   }

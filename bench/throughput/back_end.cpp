@@ -24,10 +24,12 @@ struct Frame {
   const char* name;
   Sampling sampling;
   Update update;
+  Step last;
 };
-constexpr Frame kFrames[] = {{"each pixel", Sampling::kEveryPixel, Update::kAll},
-                             {"adaptive", Sampling::kAdaptive, Update::kAll},
-                             {"a moving frame", Sampling::kEveryPixel, Update::kWhole}};
+constexpr Frame kFrames[] = {
+    {"each pixel", Sampling::kEveryPixel, Update::kAll, kFirstAdaptiveStep},
+    {"adaptive", Sampling::kAdaptive, Update::kAll, {10}},
+    {"a moving frame", Sampling::kEveryPixel, Update::kWhole, {1}}};
 
 Seconds time_of(int repeats, const std::function<void()>& work) {
   work();  // memory is there from now on
@@ -53,7 +55,7 @@ BeginView view_of(const Subject& subject, ImageSize size, const Frame& frame) {
 }
 
 /// All that workers would send.
-std::vector<Samples> samples_of(const BeginView& view,
+std::vector<Samples> samples_of(const BeginView& view, Step last,
                                 const std::shared_ptr<const CommittedScene>& scene) {
   const CastView cast{view.epoch,
                       view.grid,
@@ -62,7 +64,6 @@ std::vector<Samples> samples_of(const BeginView& view,
                       make_ray_caster(scene, view.camera, view.grid.image),
                       view.update,
                       0};
-  const Step last = view.update == Update::kAll ? kFirstAdaptiveStep : Step{1};
   std::vector<Samples> all;
   for (std::uint32_t tile = 0; tile < view.grid.count(); ++tile) {
     auto refined =
@@ -130,7 +131,7 @@ std::vector<BackEndRow> measure_back_end(const Subject& subject, ImageSize size,
   std::vector<BackEndRow> rows;
   for (const Frame& frame : kFrames) {
     const BeginView view = view_of(subject, size, frame);
-    rows.push_back(measure(view, samples_of(view, scene), frame.name, repeats));
+    rows.push_back(measure(view, samples_of(view, frame.last, scene), frame.name, repeats));
   }
   return rows;
 }

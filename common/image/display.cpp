@@ -11,35 +11,30 @@
 namespace goldthread {
 namespace {
 
-/// A pixel in one register of every x86-64 and ARMv8.
-using Lanes = float __attribute__((vector_size(16)));
-using Integers = std::int32_t __attribute__((vector_size(16)));
-using Bytes = std::uint8_t __attribute__((vector_size(4)));
-
-/// As to_8_bits(), a whole pixel at a time.
-Bytes rounded(const float* rgba) {
-  Lanes value;
-  std::memcpy(&value, rgba, sizeof value);
-  const Lanes zero{0, 0, 0, 0}, one{1, 1, 1, 1};
-  value = value > zero ? value : zero;  // what is not a number becomes 0
-  value = (value < one ? value : one) * 255.0f;
-  const Integers below = __builtin_convertvector(value, Integers);
+/// As to_8_bits(), without a branch or a call, so that the compiler takes many at once.
+std::uint8_t rounded(float value) {
+  const float positive = value > 0 ? value : 0;  // what is not a number becomes 0
+  const float scaled = (positive < 1 ? positive : 1) * 255;
+  const int below = static_cast<int>(scaled);
   // Exact: adding a half before cutting off would round some values below it upwards.
-  const Lanes rest = value - __builtin_convertvector(below, Lanes);
-  const Integers up = rest >= 0.5f;  // −1 where true
-  return __builtin_convertvector(below - up, Bytes);
+  const bool up = scaled - static_cast<float>(below) >= 0.5f;
+  return static_cast<std::uint8_t>(below + (up ? 1 : 0));
 }
+
+/// Pixels at a time: they stay in the nearest cache between rounding and packing.
+constexpr std::size_t kChunk = 64;
 
 void display(std::span<const float> rgba, std::uint8_t* rgb) {
   const std::size_t pixels = rgba.size() / 4;
-  // Four bytes at a time: the last is that of the next pixel, which is written after it.
-  for (std::size_t i = 0; i + 1 < pixels; ++i) {
-    const Bytes bytes = rounded(rgba.data() + 4 * i);
-    std::memcpy(rgb + 3 * i, &bytes, 4);
+  for (std::size_t first = 0; first < pixels; first += kChunk) {
+    const std::size_t count = std::min(kChunk, pixels - first);
+    std::array<std::uint8_t, 4 * kChunk> bytes;
+    for (std::size_t i = 0; i < 4 * count; ++i) bytes[i] = rounded(rgba[4 * first + i]);
+    std::uint8_t* out = rgb + 3 * first;
+    // Four bytes at a time: the last is that of the next pixel, which is written after it.
+    for (std::size_t i = 0; i + 1 < count; ++i) std::memcpy(out + 3 * i, &bytes[4 * i], 4);
+    std::memcpy(out + 3 * (count - 1), &bytes[4 * (count - 1)], 3);
   }
-  if (pixels == 0) return;
-  const Bytes last = rounded(rgba.data() + 4 * (pixels - 1));
-  std::memcpy(rgb + 3 * (pixels - 1), &last, 3);
 }
 
 /// sRGB's curve and the rounding to 8 bits, of all floats from 0 to 1, by the thresholds between
