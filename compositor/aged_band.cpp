@@ -2,7 +2,6 @@
 #include "compositor/aged_band.h"
 
 #include <algorithm>
-#include <cstring>
 
 #include "common/tile/update_pattern.h"
 #include "compositor/reconstruct.h"
@@ -39,8 +38,7 @@ bool AgedBand::place(const Samples& message) {
       message.packed.size() % sizeof(Sample) != 0)
     return false;
   const std::size_t tile = message.tile.value - first_;
-  std::vector<Sample> samples(message.count);
-  if (!samples.empty()) std::memcpy(samples.data(), message.packed.data(), message.packed.size());
+  const std::span samples(reinterpret_cast<const Sample*>(message.packed.data()), message.count);
   if (!tiles_[tile].put(message.epoch, part_, samples)) return false;
   if (placed_[tile] != epoch_) --missing_;
   placed_[tile] = epoch_;
@@ -49,18 +47,29 @@ bool AgedBand::place(const Samples& message) {
 
 std::vector<float> AgedBand::picture(std::span<const ViewMovement> moved,
                                      const glm::dvec3& background) const {
-  const auto moved_px = [&](Epoch view) {
+  std::vector<float> pixels(4 * std::size_t(rect_.width) * std::size_t(rect_.height));
+  const auto moved_px = movement(moved);
+  for (const AgedSamples& tile : tiles_)
+    write_over(tile.picture(moved_px), tile.rect().width, tile.rect(), background, rect_, pixels);
+  return pixels;
+}
+
+void AgedBand::shown(std::span<const ViewMovement> moved, const glm::dvec3& background,
+                     ColorSpace color_space, std::vector<std::uint8_t>& rgb) const {
+  rgb.resize(3 * std::size_t(rect_.width) * std::size_t(rect_.height));
+  const auto moved_px = movement(moved);
+  for (const AgedSamples& tile : tiles_)
+    write_shown(tile.picture(moved_px), tile.rect().width, tile.rect(), background, rect_,
+                color_space, rgb);
+}
+
+AgedSamples::Movement AgedBand::movement(std::span<const ViewMovement> moved) const {
+  return [this, moved](Epoch view) {
     if (view == epoch_) return 0.0;
     const auto found = std::find_if(moved.begin(), moved.end(),
                                     [&](const ViewMovement& known) { return known.epoch == view; });
     return found == moved.end() ? kFarAway : double(found->pixels);
   };
-  std::vector<float> pixels(4 * std::size_t(rect_.width) * std::size_t(rect_.height));
-  for (const AgedSamples& tile : tiles_) {
-    const auto samples = tile.picture(moved_px);
-    write_over(samples, tile.rect().width, tile.rect(), background, rect_, pixels);
-  }
-  return pixels;
 }
 
 }  // namespace goldthread

@@ -31,8 +31,13 @@ class AgedBand {
   /// left it.
   std::vector<float> picture(std::span<const ViewMovement> moved,
                              const glm::dvec3& background) const;
+  /// The same as it is displayed: RGB8, in memory that is reused.
+  void shown(std::span<const ViewMovement> moved, const glm::dvec3& background,
+             ColorSpace color_space, std::vector<std::uint8_t>& rgb) const;
 
  private:
+  AgedSamples::Movement movement(std::span<const ViewMovement> moved) const;
+
   TileGrid grid_;
   std::uint32_t first_;  ///< of its tiles
   Update update_;

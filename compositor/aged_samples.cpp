@@ -73,13 +73,16 @@ AgedSamples::AgedSamples(PixelRect rect, Update update)
     : rect_(rect),
       update_(update),
       samples_(update_places(rect, update)),
-      views_(parts_of(update)) {}
+      views_(parts_of(update)),
+      places_(views_.size()) {}
 
 bool AgedSamples::put(Epoch view, std::uint32_t part, std::span<const Sample> samples) {
   if (part >= views_.size()) return false;
-  const std::vector<UpdatePlace> places = places_of(rect_, update_, part);
+  std::vector<std::uint32_t>& places = places_[part];
+  if (places.empty())
+    for (const UpdatePlace& place : places_of(rect_, update_, part)) places.push_back(place.index);
   if (places.size() != samples.size()) return false;
-  for (std::size_t i = 0; i < places.size(); ++i) samples_[places[i].index] = samples[i];
+  for (std::size_t i = 0; i < places.size(); ++i) samples_[places[i]] = samples[i];
   views_[part] = view;
   return true;
 }
@@ -119,7 +122,7 @@ std::vector<float> AgedSamples::weights(const Movement& moved_px) const {
   for (std::uint32_t part = 0; part < views_.size(); ++part) {
     if (!views_[part]) continue;
     const auto weight = static_cast<float>(fading(moved_px(*views_[part])));
-    for (const UpdatePlace& place : places_of(rect_, update_, part)) weights[place.index] = weight;
+    for (const std::uint32_t place : places_[part]) weights[place] = weight;
   }
   return weights;
 }

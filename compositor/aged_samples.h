@@ -57,6 +57,8 @@ class AgedSamples {
   Update update_;
   std::vector<Sample> samples_;              ///< by UpdatePlace::index
   std::vector<std::optional<Epoch>> views_;  ///< of each part
+  /// The places of each part that ever came, in the order of its samples.
+  std::vector<std::vector<std::uint32_t>> places_;
 };
 
 /// 1 / (1 + (m / ½)⁴) of a movement in pixels: whole below a quarter of a pixel, a 17th at one.

@@ -5,15 +5,11 @@
 #include <utility>
 
 #include "common/base/cores.h"
-#include "common/base/memory.h"
-#include "common/image/display.h"
 #include "common/protocol/topology.h"
-#include "common/tile/filter.h"
 #include "common/transport/counters.h"
 #include "common/transport/shared_memory.h"
 #include "compositor/encode.h"
 #include "compositor/output_window.h"
-#include "compositor/reconstruct.h"
 
 namespace goldthread {
 namespace {
@@ -23,7 +19,8 @@ constexpr std::chrono::seconds kFarewell{2};
 
 }  // namespace
 
-CompositorRole::CompositorRole(Transport& transport) : post_(transport) {}
+CompositorRole::CompositorRole(Transport& transport, const CanvasMaker& make_canvas)
+    : post_(transport), canvas_(make_canvas()) {}
 
 bool CompositorRole::run() {
   post_.to_master(Hello{kProtocolVersion, GOLDTHREAD_VERSION, Role::kCompositor, host_name(),
@@ -64,14 +61,7 @@ void CompositorRole::on(const BeginView& message) {
   const Topology topology{compositors_, 1};
   const Band band = band_of(message.grid, topology.compositor_index(post_.rank()), compositors_);
   view_ = message;
-  if (samples_ && samples_->grid() == view_->grid)
-    samples_->restart();
-  else
-    samples_.emplace(view_->grid, band);
-  if (in_parts()) {
-    if (!aged_ || !aged_->fits(*view_)) aged_.emplace(*view_, band);
-    aged_->begin_view(view_->epoch, view_->frame);
-  }
+  canvas_->begin_view(*view_, band);
   told_step_ = kNoStep;
   tell_step();  // of a band without tiles, which nothing else will
   if (early_.empty() || early_.front().epoch > view_->epoch) return;
@@ -95,7 +85,7 @@ void CompositorRole::on(Samples message) {
 }
 
 void CompositorRole::place(const Samples& message) {
-  if (!(in_parts() ? aged_->place(message) : samples_->place(message))) {
+  if (!canvas_->place(message)) {
     throw FatalError({"rank " + std::to_string(post_.rank().value),
                       "was sent samples that do not fit tile " + std::to_string(message.tile.value),
                       "start the same build of goldthread on every host",
@@ -105,53 +95,28 @@ void CompositorRole::place(const Samples& message) {
 }
 
 void CompositorRole::tell_step() {
-  const Step parts_step = aged_ && aged_->complete() ? Step{1} : kNoStep;
-  const Step step = in_parts() ? parts_step : samples_->step();
+  const Step step = canvas_->step();
   if (step == told_step_) return;
   told_step_ = step;
   post_.to_master(BandReady{view_->epoch, step});
 }
 
-std::vector<float> CompositorRole::picture(Filter filter,
-                                           std::span<const ViewMovement> moved) const {
-  return in_parts() ? aged_->picture(moved, view_->background)
-                    : reconstruct(*samples_, filter, view_->background);
-}
-
-std::vector<float> CompositorRole::picture_of(const Present& present, PixelRect rect) const {
-  auto pixels = picture(present.filter, present.moved);
-  const ImageSize image = view_->grid.image;
-  const PixelRect band = samples_->rect();
-  if (present.size == image && present.filter != Filter::kBiquadratic) return pixels;
-  return resample(pixels, {band.width, band.height}, window_of(band, image, rect, present.size),
-                  {rect.width, rect.height}, present.filter);
-}
-
 void CompositorRole::on(const Present& message) {
-  if (!view_ || message.epoch != view_->epoch || samples_->tiles().empty()) return;
+  if (!view_ || message.epoch != view_->epoch) return;
   EncodedBand band;
-  band.rect = band_of_size(samples_->rect(), view_->grid.image, message.size);
-  if (band.rect.height == 0) return;  // less than a row of a smaller picture
-  const auto pixels = picture_of(message, band.rect);
-  const auto rgb = display_rgb8(pixels, view_->color_space);
-  const Encoding encoding = message.lossless ? Encoding::kZstdRgb : Encoding::kJpeg;
+  band.rect = band_of_size(canvas_->rect(), view_->grid.image, message.size);
+  if (band.rect.height == 0) return;  // less than a row of a smaller picture, or of no tiles
   band.present = message;
   band.present.moved.clear();
   band.image = message.size;
-  band.encoding = static_cast<std::uint8_t>(encoding);
-  band.payload = encode_pixels(rgb, {band.rect.width, band.rect.height}, encoding);
+  band.encoding = static_cast<std::uint8_t>(encoding_of(message));
+  band.payload = canvas_->encoded(message, band.rect);
   post_.to_compositor(Topology{compositors_, 1}.gateway(), std::move(band));
 }
 
 void CompositorRole::on(const CollectBand& message) {
   if (!view_ || message.epoch != view_->epoch) return;
-  BandPicture band{message.epoch, samples_->rect(), {}};
-  if (!samples_->tiles().empty()) {
-    const auto pixels = picture(message.filter, {});
-    band.pixels = Buffer(pixels.size() * sizeof(float));
-    std::memcpy(band.pixels.data(), pixels.data(), band.pixels.size());
-  }
-  post_.to_master(std::move(band));
+  post_.to_master(BandPicture{message.epoch, canvas_->rect(), canvas_->pixels(message.filter)});
 }
 
 void CompositorRole::on(EncodedBand message) {

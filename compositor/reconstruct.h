@@ -19,9 +19,18 @@ namespace goldthread {
 std::vector<float> reconstruct(const SampleArray& samples, Filter filter,
                                const glm::dvec3& background);
 
+/// The same as it is displayed: RGB8, 3 bytes a pixel, equal to display_rgb8() of the above, in
+/// memory that is reused.
+void reconstruct_shown(const SampleArray& samples, Filter filter, const glm::dvec3& background,
+                       ColorSpace color_space, std::vector<std::uint8_t>& rgb);
+
 /// Puts samples, `stride` in a row, over the background into the pixels of `rect` of a band's
 /// picture.
 void write_over(std::span<const Sample> samples, int stride, const PixelRect& rect,
                 const glm::dvec3& background, const PixelRect& band, std::span<float> pixels);
+/// The same as it is displayed.
+void write_shown(std::span<const Sample> samples, int stride, const PixelRect& rect,
+                 const glm::dvec3& background, const PixelRect& band, ColorSpace color_space,
+                 std::span<std::uint8_t> rgb);
 
 }  // namespace goldthread

@@ -25,10 +25,9 @@ bool TileSamples::place(const Samples& message) {
       message.packed.size() / (sizeof(Sample) + sizeof(SampleOffset)) != count ||
       message.packed.size() % (sizeof(Sample) + sizeof(SampleOffset)) != 0)
     return false;
-  std::vector<SampleOffset> places(count);
   const std::byte* const colors = message.packed.data();
-  if (count > 0)
-    std::memcpy(places.data(), colors + count * sizeof(Sample), count * sizeof(SampleOffset));
+  const std::span places(reinterpret_cast<const SampleOffset*>(colors + count * sizeof(Sample)),
+                         count);
   const bool inside = std::all_of(places.begin(), places.end(), [&](SampleOffset place) {
     return place.x < stride_ && place.y < rows_;
   });

@@ -41,7 +41,7 @@ struct ClusterOptions {
   std::optional<int> slabs = {};  ///< parts of the volume, 0: one for each worker; absent: not cut
   /// Asked while waiting for other ranks; true ends the job with Interrupted.
   std::function<bool()> interrupted = [] { return false; };
-  Strategy strategy = {};
+  Strategy strategy = {.spare_us = kSpareUs};
 };
 
 struct RankState {

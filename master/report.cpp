@@ -69,10 +69,11 @@ Json ranks_of(const std::vector<RankState>& ranks) {
   return list;
 }
 
-Json bytes_of(const std::vector<RankState>& ranks) {
-  Json bytes = Json::object();
-  for (const auto& [kind, count] : traffic_of(ranks)) bytes[kind] = count.bytes;
-  return bytes;
+/// Of what all ranks have sent, by kind of message.
+Json sums_of(const std::vector<RankState>& ranks, std::uint64_t MessageCount::*what) {
+  Json sums = Json::object();
+  for (const auto& [kind, count] : traffic_of(ranks)) sums[kind] = count.*what;
+  return sums;
 }
 
 }  // namespace
@@ -93,13 +94,15 @@ std::optional<double> prediction_error(const ViewState& view) {
 }
 
 std::string report_json(const Cluster& cluster, const std::vector<ViewState>& frames,
-                        double load_seconds) {
+                        double load_seconds, const std::vector<std::string>& bypassed) {
   const Json report = {{"frames", frames_of(frames)},
                        {"features", cluster.features()},
                        {"kernel", cluster.kernel()},
                        {"ranks", ranks_of(cluster.ranks())},
                        {"tiles", frames.empty() ? Json::array() : tiles_of(frames.back())},
-                       {"bytes", bytes_of(cluster.ranks())},
+                       {"messages", sums_of(cluster.ranks(), &MessageCount::messages)},
+                       {"bytes", sums_of(cluster.ranks(), &MessageCount::bytes)},
+                       {"bypassed", bypassed},
                        {"loadSeconds", load_seconds},
                        {"version", GOLDTHREAD_VERSION}};
   return report.dump(2) + "\n";

@@ -18,9 +18,10 @@ double estimated_error(const ViewState& view);
 /// was the first.
 std::optional<double> prediction_error(const ViewState& view);
 
-/// frames, features, kernel, ranks, tiles (of the last frame), bytes by kind of message (of the
-/// whole cluster), loadSeconds, version.
+/// frames, features, kernel, ranks, tiles (of the last frame), messages and bytes by kind of
+/// message (of the whole cluster), the names of the roles that were by-passed, loadSeconds,
+/// version.
 std::string report_json(const Cluster& cluster, const std::vector<ViewState>& frames,
-                        double load_seconds);
+                        double load_seconds, const std::vector<std::string>& bypassed);
 
 }  // namespace goldthread

@@ -18,7 +18,10 @@ Scheduler::Scheduler(const std::vector<int>& capacity, Strategy strategy) : stra
 }
 
 void Scheduler::begin_view(const TileGrid& grid, const CostHistory& costs, Step last) {
-  for (Worker& worker : workers_) worker.held.clear();
+  for (Worker& worker : workers_) {
+    worker.held.clear();
+    worker.held_us = 0;
+  }
   tiles_.assign(grid.count(), {});
   step_ = Step{1};
   last_ = last;
@@ -37,6 +40,7 @@ void Scheduler::open_step(const CostHistory& costs) {
 void Scheduler::cancel() {
   for (Worker& worker : workers_) {
     worker.held.clear();
+    worker.held_us = 0;
     worker.waiting = {};
   }
   unowned_ = {};
@@ -183,13 +187,30 @@ std::optional<TileId> Scheduler::take_over(int worker) {
   return take(queue, best);
 }
 
+double Scheduler::expected_us(TileId tile) const {
+  const double cost_us = tiles_[tile.value].cost_us;
+  if (cost_us > 0 || strategy_.share != Share::kOnDemand) return cost_us;
+  return strategy_.spare_us;
+}
+
+bool Scheduler::has_room(const Worker& worker) const {
+  if (std::cmp_less(worker.held.size(), worker.capacity)) return true;
+  return worker.held.size() < kMostHeld && worker.held_us < strategy_.spare_us * worker.threads();
+}
+
+void Scheduler::hold(Worker& worker, TileId tile) {
+  worker.held.back().push_back(tile);
+  worker.held_us += expected_us(tile);
+}
+
 std::optional<Quantum> Scheduler::next(int worker) {
   Worker& taker = workers_.at(static_cast<std::size_t>(worker));
-  if (taker.lost || std::cmp_greater_equal(taker.held.size(), taker.capacity)) return {};
+  if (taker.lost || !has_room(taker)) return {};
   const auto tile = take(worker);
   if (!tile) return {};
-  taker.held.push_back({*tile});
+  taker.held.emplace_back();
   taker.newest_us = tiles_[tile->value].cost_us;
+  hold(taker, *tile);
   tiles_[tile->value].owner = worker;
   return Quantum{*tile, Step{static_cast<std::uint16_t>(step_.value - 1)}, step_};
 }
@@ -204,19 +225,21 @@ std::optional<TileId> Scheduler::join(int worker) {
   if (with_it > joined_us_) return {};
   const TileId tile = take(queue, queue.tiles.begin());
   taker.newest_us = with_it;
-  taker.held.back().push_back(tile);
+  hold(taker, tile);
   tiles_[tile.value].owner = worker;
   return tile;
 }
 
 Finished Scheduler::done(int worker, TileId tile, Step to, double squared_error) {
-  auto& held = workers_.at(static_cast<std::size_t>(worker)).held;
+  Worker& doer = workers_.at(static_cast<std::size_t>(worker));
+  auto& held = doer.held;
   const auto quantum = std::find_if(held.begin(), held.end(), [&](const auto& tiles) {
     return std::find(tiles.begin(), tiles.end(), tile) != tiles.end();
   });
   if (quantum == held.end() || to != step_) return Finished::kNot;
   std::erase(*quantum, tile);
   if (quantum->empty()) held.erase(quantum);
+  doer.held_us -= expected_us(tile);
   Tile& finished = tiles_[tile.value];
   finished.squared_error = squared_error;
   finished.done_by = worker;
@@ -249,6 +272,7 @@ void Scheduler::worker_lost(int worker) {
   for (const TileId tile : unowned_.tiles) put(again, tile);
   unowned_ = std::move(again);
   lost.held.clear();
+  lost.held_us = 0;
   lost.waiting = {};
   for (Tile& tile : tiles_)
     if (tile.owner == worker) tile.owner = -1;

@@ -47,10 +47,18 @@ enum class Share : std::uint8_t {
   kContiguous,  ///< each worker as many tiles, one after the other; no one takes over
   kInterleaved  ///< likewise, but worker w of n each n-th
 };
-/// What benches compare; jobs use the default.
+/// Work that each of a worker's threads has in hand: what a question to the master and its answer
+/// take where both poll with a back-off on busy cores, and a bit more.
+constexpr double kSpareUs = 500;
+/// Of tiles that take next to no time: what a worker may hold at most.
+constexpr std::size_t kMostHeld = 64;
+/// What benches compare.
 struct Strategy {
   Order order = Order::kUrgent;
   Share share = Share::kOnDemand;
+  /// For each of its threads a worker may hold more quanta than it has places while they are
+  /// predicted to take less than this. Clusters take kSpareUs.
+  double spare_us = 0;
 };
 
 /// Cheap tiles are joined until the quantum is predicted to take so long, or this share of what a
@@ -60,8 +68,8 @@ constexpr double kJoinedShare = 1.0 / 64;
 constexpr std::size_t kMostJoined = 16;
 /// A spare is held back from a worker whose threads are busy once what waits beside it would keep
 /// the threads that it waits for busy for less than this many times as long: at the end of a step
-/// it would wait there while others are idle. What is no dearer than joined tiles never is, nor what
-/// would take another worker more than this many times as long.
+/// it would wait there while others are idle. What is no dearer than joined tiles never is, nor
+/// what would take another worker more than this many times as long.
 constexpr double kSpareRounds = 2;
 
 class Scheduler {
@@ -108,6 +116,7 @@ class Scheduler {
     bool lost = false;
     std::vector<std::vector<TileId>> held;  ///< quanta, the newest last
     double newest_us = 0;                   ///< predicted of that one
+    double held_us = 0;                     ///< of all, what nothing is known of as dear
     Queue waiting;                          ///< tiles whose state it holds, or that it was dealt
     int threads() const { return capacity > 1 ? capacity - 1 : 1; }
   };
@@ -131,6 +140,9 @@ class Scheduler {
     return worker.waiting.tiles.empty() ? unowned_ : worker.waiting;
   }
   bool is_due(const Worker& taker, TileId tile, double waiting_us, int threads) const;
+  double expected_us(TileId tile) const;
+  bool has_room(const Worker& worker) const;
+  void hold(Worker& worker, TileId tile);
   std::optional<TileId> take(int worker);
   std::optional<TileId> take_over(int worker);
   double held_us(const Worker& worker) const;

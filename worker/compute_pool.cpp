@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "worker/compute_pool.h"
 
+#include <algorithm>
 #include <utility>
 
 #include "common/base/thread_clock.h"
-#include "worker/refine_tile.h"
 #include "worker/thread_priority.h"
 
 namespace goldthread {
@@ -15,8 +15,12 @@ constexpr std::size_t kMostTileBytes = std::size_t{1} << 29;
 
 }  // namespace
 
-ComputePool::ComputePool(unsigned threads, bool idle_priority, std::function<void()> notify)
-    : notify_(std::move(notify)), tiles_(kMostTileBytes), running_(threads) {
+ComputePool::ComputePool(unsigned threads, bool idle_priority, std::function<void()> notify,
+                         TileCaster cast_tile)
+    : notify_(std::move(notify)),
+      cast_tile_(std::move(cast_tile)),
+      tiles_(kMostTileBytes),
+      running_(threads) {
   for (std::size_t i = 0; i < threads; ++i) {
     threads_.emplace_back([this, i, idle_priority](const std::stop_token& stop) {
       if (idle_priority) give_way();
@@ -38,13 +42,17 @@ void ComputePool::begin_view(std::shared_ptr<const CastView> view) {
   tiles_.clear();
 }
 
-void ComputePool::push(const RenderTile& quantum) {
+void ComputePool::push(std::span<const RenderTile> quanta) {
+  std::size_t count = 0;
   {
     const std::lock_guard lock(mutex_);
-    if (!view_ || quantum.epoch != view_->epoch) return;
-    queue_.push_back(quantum);
+    for (const RenderTile& quantum : quanta) {
+      if (!view_ || quantum.epoch != view_->epoch) continue;
+      queue_.push_back(quantum);
+      ++count;
+    }
   }
-  pushed_.notify_one();
+  for (std::size_t i = 0; i < std::min(count, threads_.size()); ++i) pushed_.notify_one();
 }
 
 std::vector<ComputePool::Done> ComputePool::take_done() {
@@ -102,24 +110,27 @@ void ComputePool::cast(const CastView& view, const RenderTile& quantum,
                        const std::stop_token& stop) {
   // Not by the clock on the wall: a thread that was made to wait has had no dear tile.
   const auto begin = ThreadClock::now();
-  auto result = refine_tile(view, quantum, std::move(tile), [&] {
+  auto result = cast_tile_(view, quantum, std::move(tile), [&] {
     return epoch_.load(std::memory_order_relaxed) != quantum.epoch.value || stop.stop_requested();
   });
   const auto cost = ThreadClock::now() - begin;
   const auto end = BusyLog::Clock::now();
-  const auto cost_us = std::chrono::duration_cast<std::chrono::microseconds>(cost).count();
+  // Rounded up: 0 would mean that nothing is known.
+  const auto cost_us = std::chrono::ceil<std::chrono::microseconds>(cost).count();
+  bool first = false;
   {
     const std::lock_guard lock(mutex_);
     busy_.add(end - cost, end);  // what it waited for others does not count
     running_[thread].reset();
     if (!result || quantum.epoch != view_->epoch) return;
+    first = outbox_.empty();
     if (result->tile) tiles_.put(quantum.tile, std::move(result->tile));
     outbox_.push_back(
         {std::move(result->samples),
          {quantum.epoch, quantum.tile, quantum.to, static_cast<std::uint32_t>(cost_us),
           result->counts.rays, result->counts.samples, result->quality}});
   }
-  notify_();
+  if (first) notify_();  // of the others it will hear when it comes for this one
 }
 
 }  // namespace goldthread

@@ -13,12 +13,14 @@
 #include <memory>
 #include <mutex>
 #include <optional>
+#include <span>
 #include <thread>
 #include <vector>
 
 #include "common/base/busy_log.h"
 #include "common/protocol/messages.h"
 #include "worker/cast_view.h"
+#include "worker/refine_tile.h"
 #include "worker/tile_store.h"
 
 namespace goldthread {
@@ -32,13 +34,15 @@ class ComputePool {
 
   /// `threads` threads, which give way to all others if `idle_priority`; `notify` is called from
   /// them when take_done() has something to tell.
-  ComputePool(unsigned threads, bool idle_priority, std::function<void()> notify);
+  ComputePool(unsigned threads, bool idle_priority, std::function<void()> notify,
+              TileCaster cast_tile = refine_tile);
   ~ComputePool();
 
   /// From now on only quanta of `view` are cast.
   void begin_view(std::shared_ptr<const CastView> view);
-  /// Of another epoch than the view's: ignored.
-  void push(const RenderTile& quantum);
+  /// Of another epoch than the view's: ignored. Several at once wake the threads once.
+  void push(std::span<const RenderTile> quanta);
+  void push(const RenderTile& quantum) { push({&quantum, 1}); }
   /// What was finished since the last call; never of a stale epoch. Throws what a thread failed
   /// with, once.
   std::vector<Done> take_done();
@@ -55,6 +59,7 @@ class ComputePool {
             std::size_t thread, const std::stop_token& stop);
 
   std::function<void()> notify_;
+  TileCaster cast_tile_;
   mutable std::mutex mutex_;
   std::condition_variable_any pushed_;
   std::shared_ptr<const CastView> view_;

@@ -27,4 +27,10 @@ std::optional<RefinedTile> refine_tile(const CastView& view, const RenderTile& q
                                        std::unique_ptr<TileRefinement> tile,
                                        const std::function<bool()>& stale);
 
+/// What a worker computes of a quantum: refine_tile, or the stub that by-passes it (bypass.h).
+/// Asked by all threads of a worker at once.
+using TileCaster = std::function<std::optional<RefinedTile>(
+    const CastView& view, const RenderTile& quantum, std::unique_ptr<TileRefinement> tile,
+    const std::function<bool()>& stale)>;
+
 }  // namespace goldthread

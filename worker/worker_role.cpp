@@ -20,6 +20,8 @@ namespace {
 constexpr std::chrono::milliseconds kIdleWait{50};
 constexpr std::chrono::seconds kFarewell{2};
 constexpr std::chrono::milliseconds kLoadingWait{20};
+/// That threads may be left to wait for while messages keep coming.
+constexpr std::size_t kMostQuanta = 16;
 /// That the master measures a camera's movement by.
 constexpr std::size_t kVisiblePoints = 64;
 
@@ -36,8 +38,8 @@ void expect_short_steps(const CommittedScene& scene) {
 
 }  // namespace
 
-WorkerRole::WorkerRole(Transport& transport, SourceMaker make_source)
-    : post_(transport), make_source_(std::move(make_source)) {}
+WorkerRole::WorkerRole(Transport& transport, SourceMaker make_source, TileCaster cast_tile)
+    : post_(transport), make_source_(std::move(make_source)), cast_tile_(std::move(cast_tile)) {}
 
 void WorkerRole::require(bool good, const char* what) const {
   if (good) return;
@@ -55,7 +57,9 @@ bool WorkerRole::run() {
         sender_ = message->first;
         std::visit([&](auto& value) { on(std::move(value)); }, message->second);
         heartbeat_.beat(post_);  // also when messages never end
+        if (quanta_.size() >= kMostQuanta) push_quanta();
       }
+      push_quanta();
       finish_loading();
       finish_counting();
       send_done();
@@ -81,7 +85,7 @@ void WorkerRole::on(BeginSession message) {
             "was given more slabs than workers");
     slabs_ = std::make_unique<SlabCrew>(topology, post_.rank(), message, wake);
   }
-  pool_ = std::make_unique<ComputePool>(message.tiles, message.interactive, wake);
+  pool_ = std::make_unique<ComputePool>(message.tiles, message.interactive, wake, cast_tile_);
 }
 
 void WorkerRole::on(const LoadVolume& message) {
@@ -179,8 +183,14 @@ void WorkerRole::on(const RenderTiles& message) {
     if (!view_ || tile.epoch != view_->epoch) continue;
     require(tile.tile.value < view_->grid.count() && is_step(tile.from, tile.to),
             "was given a tile or step that its view does not have");
-    pool_->push(tile);
+    quanta_.push_back(tile);
   }
+}
+
+/// What came at once is handed over at once: waking a thread takes as long as a quick tile.
+void WorkerRole::push_quanta() {
+  if (!quanta_.empty()) pool_->push(quanta_);
+  quanta_.clear();
 }
 
 void WorkerRole::on(AdvanceRays message) {

@@ -8,6 +8,7 @@
 #include <future>
 #include <memory>
 #include <optional>
+#include <vector>
 
 #include "common/transport/heartbeat.h"
 #include "common/transport/post.h"
@@ -24,7 +25,8 @@ using SourceMaker = std::function<std::shared_ptr<const SampleSource>(
 
 class WorkerRole {
  public:
-  explicit WorkerRole(Transport& transport, SourceMaker make_source = make_ray_caster);
+  explicit WorkerRole(Transport& transport, SourceMaker make_source = make_ray_caster,
+                      TileCaster cast_tile = refine_tile);
   /// Serves until the master says stop. What fails is told to the master, which ends the job. True
   /// if no rank was lost meanwhile.
   bool run();
@@ -45,6 +47,7 @@ class WorkerRole {
   void on(const Stop& message);
   /// Throws FatalError unless what the master sent makes sense.
   void require(bool good, const char* what) const;
+  void push_quanta();
   void send_done();
   void finish_loading();
   void finish_counting();
@@ -53,6 +56,7 @@ class WorkerRole {
 
   Post post_;
   SourceMaker make_source_;
+  TileCaster cast_tile_;
   HeartbeatSender heartbeat_;
   std::optional<Stop> stop_;
   Rank sender_;  ///< of the message at hand
@@ -66,6 +70,7 @@ class WorkerRole {
   std::shared_ptr<const CommittedScene> scene_;
   std::optional<BeginView> view_;
   std::unique_ptr<SlabCrew> slabs_;  ///< where the volume lies in slabs
+  std::vector<RenderTile> quanta_;   ///< of the view, that the threads do not know of yet
   std::unique_ptr<ComputePool> pool_;
 };
 

@@ -302,18 +302,18 @@ constexpr OptionRow kTable[] = {
      "Share of samples updated per displayed frame while the view moves: 100, 50, 25, or frameless "
      "[100]",
      kServes, apply_update},
-    {"workers", "--workers", "N", kCluster, "Worker ranks, single process only [1]", kBoth,
+    {"workers", "--workers", "N", kCluster, "Worker ranks, single process only [1]",
+     kBoth | kBenches,
      [](Options& o, const std::string& t) { return read_integer(t, 1, 4096, o.workers); }},
     {"threads", "--threads", "N", kCluster,
      "Threads per worker [cores of the node / worker ranks on it]", kBoth | kBenches,
      [](Options& o, const std::string& t) { return read_integer(t, 1, 1024, o.threads); }},
-    {"compositors", "--compositors", "N", kCluster, "Compositor ranks [1]", kBoth,
+    {"compositors", "--compositors", "N", kCluster, "Compositor ranks [1]", kBoth | kBenches,
      [](Options& o, const std::string& t) { return read_integer(t, 1, 1024, o.compositors); }},
     {"tile", "--tile", "N", kCluster,
      "Edge of all tiles in pixels, a multiple of 16 [64; with every-pixel by the picture's size "
-     "and "
-     "the threads, dear tiles split]",
-     kBoth, apply_tile},
+     "and the threads, dear tiles split]",
+     kBoth | kBenches, apply_tile},
     {"schedule", "--schedule", "HOW", kCluster,
      "squares or rows: which parts of the screen go out together [squares]", kBoth, apply_schedule},
     {"data", "--data", "WHERE", kCluster,
@@ -323,7 +323,7 @@ constexpr OptionRow kTable[] = {
     {"bypass", "--bypass", "LIST", kCluster,
      "Roles whose computing is replaced by stubs that keep every message: any of master, worker, "
      "compositor, with commas between them [none]",
-     kBoth, apply_bypass},
+     kBoth | kBenches, apply_bypass},
     {"host", "--host", "H", kSession, "Address to listen on [127.0.0.1]", kServes,
      [](Options& o, const std::string& t) { return keep_text(t, o.host); }},
     {"port", "--port", "P", kSession, "Port to listen on, 0 for any free one [8080]", kServes,
@@ -351,8 +351,9 @@ constexpr OptionRow kTable[] = {
 std::span<const OptionRow> option_table() { return kTable; }
 
 bool is_bench_subject(std::string_view name) {
-  constexpr std::array<std::string_view, 5> kSubjects = {"error", "motion", "throughput", "balance",
-                                                         "scale"};
+  // The last two are what the bench of throughput starts in each rank.
+  constexpr std::array<std::string_view, 7> kSubjects = {"error", "motion", "throughput", "balance",
+                                                         "scale", "frames", "stream"};
   return std::find(kSubjects.begin(), kSubjects.end(), name) != kSubjects.end();
 }
 

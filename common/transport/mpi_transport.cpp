@@ -1,9 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "common/transport/mpi_transport.h"
 
-// The deprecated C++ bindings would need a library of their own.
-#define OMPI_SKIP_MPICXX 1
-#include <mpi.h>
 #include <sys/prctl.h>
 
 #include <algorithm>
@@ -11,13 +8,13 @@
 #include <cstdlib>
 #include <deque>
 #include <limits>
-#include <list>
 #include <mutex>
 #include <string>
 #include <thread>
 #include <vector>
 
 #include "common/base/result.h"
+#include "common/transport/mpi_check.h"
 
 namespace goldthread {
 namespace {
@@ -27,19 +24,11 @@ constexpr int kTag = 1;
 /// interaction, long enough to leave the cores to the ranks that compute.
 constexpr std::chrono::microseconds kShortestSleep{20};
 constexpr std::chrono::microseconds kLongestSleep{1000};
+/// While transfers are under way and one has ended within so long, the next will soon: to sleep
+/// would leave the network idle. Others may have the core meanwhile.
+constexpr std::chrono::microseconds kFlow{30};
 /// A sleep that misses its end by the kernel's default 50 µs would double the latency.
 constexpr unsigned long kTimerSlackNs = 1000;
-
-void check(int code, const char* call) {
-  if (code == MPI_SUCCESS) return;
-  char text[MPI_MAX_ERROR_STRING];
-  int length = 0;
-  MPI_Error_string(code, text, &length);
-  throw FatalError({.where = call,
-                    .what = std::string(text, static_cast<std::size_t>(length)),
-                    .mend = "check the MPI installation and the network between the hosts",
-                    .status = ExitStatus::kClusterFailed});
-}
 
 }  // namespace
 
@@ -47,10 +36,10 @@ class MpiTransport::Impl {
  public:
   Impl() {
     int provided = 0;
-    check(MPI_Init_thread(nullptr, nullptr, MPI_THREAD_FUNNELED, &provided), "MPI_Init_thread");
+    check_mpi(MPI_Init_thread(nullptr, nullptr, MPI_THREAD_FUNNELED, &provided), "MPI_Init_thread");
     MPI_Comm_set_errhandler(MPI_COMM_WORLD, MPI_ERRORS_RETURN);
-    check(MPI_Comm_rank(MPI_COMM_WORLD, &rank_), "MPI_Comm_rank");
-    check(MPI_Comm_size(MPI_COMM_WORLD, &size_), "MPI_Comm_size");
+    check_mpi(MPI_Comm_rank(MPI_COMM_WORLD, &rank_), "MPI_Comm_rank");
+    check_mpi(MPI_Comm_size(MPI_COMM_WORLD, &size_), "MPI_Comm_size");
     receiving_.resize(static_cast<std::size_t>(size_));
     prctl(PR_SET_TIMERSLACK, kTimerSlackNs);
   }
@@ -71,10 +60,12 @@ class MpiTransport::Impl {
       throw FatalError({"MPI_Isend", "a message of 2 GiB or more", "use more compositors",
                         ExitStatus::kClusterFailed});
     }
-    Transfer& transfer = sending_.emplace_back(Transfer{std::move(message), MPI_REQUEST_NULL});
-    check(MPI_Isend(transfer.message.data(), static_cast<int>(transfer.message.size()), MPI_BYTE,
-                    to.value, kTag, MPI_COMM_WORLD, &transfer.request),
-          "MPI_Isend");
+    MPI_Request request = MPI_REQUEST_NULL;
+    check_mpi(MPI_Isend(message.data(), static_cast<int>(message.size()), MPI_BYTE, to.value, kTag,
+                        MPI_COMM_WORLD, &request),
+              "MPI_Isend");
+    sending_.push_back(std::move(message));
+    requests_.push_back(request);
   }
 
   std::optional<Envelope> receive() {
@@ -101,9 +92,16 @@ class MpiTransport::Impl {
     if (!to_self_.empty()) return;
     // While a transfer is under way only polling moves it on.
     const bool busy = !sending_.empty() || open_receives_ > 0;
-    const auto length = std::min(at_most, busy ? kShortestSleep : sleep_);
+    if (busy) {
+      // Not to be woken: what the others have meanwhile is more than one thing.
+      if (std::chrono::steady_clock::now() - last_end_ < kFlow)
+        std::this_thread::yield();
+      else
+        std::this_thread::sleep_for(std::min(at_most, kShortestSleep));
+      return;
+    }
     std::unique_lock lock(mutex_);
-    if (woken_changed_.wait_for(lock, length, [&] { return woken_; }))
+    if (woken_changed_.wait_for(lock, std::min(at_most, sleep_), [&] { return woken_; }))
       sleep_ = kShortestSleep;
     else
       sleep_ = std::min(sleep_ * 5 / 4, kLongestSleep);
@@ -132,12 +130,27 @@ class MpiTransport::Impl {
     MPI_Request request;
   };
 
+  /// All at once: asking for each by itself looks at the network as often as there are messages.
   void finish_sends() {
-    for (auto transfer = sending_.begin(); transfer != sending_.end();) {
-      int done = 0;
-      check(MPI_Test(&transfer->request, &done, MPI_STATUS_IGNORE), "MPI_Test");
-      transfer = done != 0 ? sending_.erase(transfer) : std::next(transfer);
+    if (requests_.empty()) return;
+    int count = 0;
+    done_.resize(requests_.size());
+    check_mpi(MPI_Testsome(static_cast<int>(requests_.size()), requests_.data(), &count,
+                           done_.data(), MPI_STATUSES_IGNORE),
+              "MPI_Testsome");
+    if (count == 0) return;
+    last_end_ = std::chrono::steady_clock::now();
+    std::size_t kept = 0;
+    for (std::size_t i = 0; i < requests_.size(); ++i) {
+      if (requests_[i] == MPI_REQUEST_NULL) continue;
+      if (kept != i) {
+        requests_[kept] = requests_[i];
+        sending_[kept] = std::move(sending_[i]);
+      }
+      ++kept;
     }
+    requests_.resize(kept);
+    sending_.resize(kept);
   }
 
   /// Starts to receive a message that is waiting; false if there is none.
@@ -145,17 +158,17 @@ class MpiTransport::Impl {
     int found = 0;
     MPI_Message handle = MPI_MESSAGE_NULL;
     MPI_Status status;
-    check(MPI_Improbe(MPI_ANY_SOURCE, kTag, MPI_COMM_WORLD, &found, &handle, &status),
-          "MPI_Improbe");
+    check_mpi(MPI_Improbe(MPI_ANY_SOURCE, kTag, MPI_COMM_WORLD, &found, &handle, &status),
+              "MPI_Improbe");
     if (found == 0) return false;
     int count = 0;
-    check(MPI_Get_count(&status, MPI_BYTE, &count), "MPI_Get_count");
+    check_mpi(MPI_Get_count(&status, MPI_BYTE, &count), "MPI_Get_count");
     auto& queue = receiving_[static_cast<std::size_t>(status.MPI_SOURCE)];
     Transfer& transfer = queue.emplace_back(
         Transfer{Buffer::for_receiving(static_cast<std::size_t>(count)), MPI_REQUEST_NULL});
     ++open_receives_;
-    check(MPI_Imrecv(transfer.message.data(), count, MPI_BYTE, &handle, &transfer.request),
-          "MPI_Imrecv");
+    check_mpi(MPI_Imrecv(transfer.message.data(), count, MPI_BYTE, &handle, &transfer.request),
+              "MPI_Imrecv");
     return true;
   }
 
@@ -164,8 +177,9 @@ class MpiTransport::Impl {
     auto& queue = receiving_[source];
     if (queue.empty()) return {};
     int done = 0;
-    check(MPI_Test(&queue.front().request, &done, MPI_STATUS_IGNORE), "MPI_Test");
+    check_mpi(MPI_Test(&queue.front().request, &done, MPI_STATUS_IGNORE), "MPI_Test");
     if (done == 0) return {};
+    last_end_ = std::chrono::steady_clock::now();
     Envelope envelope{Rank{static_cast<int>(source)}, std::move(queue.front().message)};
     queue.pop_front();
     --open_receives_;
@@ -175,11 +189,14 @@ class MpiTransport::Impl {
   bool abandoned_ = false;
   int rank_ = 0;
   int size_ = 1;
-  std::list<Transfer> sending_;
+  std::vector<Buffer> sending_;  ///< the request of each:
+  std::vector<MPI_Request> requests_;
+  std::vector<int> done_;
   std::vector<std::deque<Transfer>> receiving_;  // by source
   int open_receives_ = 0;
   std::size_t next_source_ = 0;
   std::deque<Envelope> to_self_;
+  std::chrono::steady_clock::time_point last_end_;  ///< of a transfer
   std::chrono::microseconds sleep_ = kShortestSleep;
 
   std::mutex mutex_;

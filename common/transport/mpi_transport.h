@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// The cluster over MPI. The only source that includes mpi.h is this header's .cpp. A rank polls
+// The cluster over MPI. mpi.h is included by this folder's mpi_* sources alone. A rank polls
 // with a back-off instead of blocking, because a blocked receive of Open MPI spins and takes the
 // core from the ranks that compute.
 

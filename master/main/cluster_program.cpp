@@ -16,6 +16,7 @@
 #include "common/transport/mpi_transport.h"
 #include "compositor/compositor_role.h"
 #include "master/cluster.h"
+#include "master/main/bypass.h"
 #include "master/main/program.h"
 #include "worker/worker_role.h"
 
@@ -40,14 +41,17 @@ struct RoleEnd {
 };
 
 /// Whatever happens, the other ranks are told to stop.
-RoleEnd run_master(Transport& transport, Topology topology, const Options& options) {
+RoleEnd run_master(Transport& transport, Topology topology, const Options& options,
+                   ClusterJob job) {
   const bool serve = options.command == Command::kServe;
+  warn_of_bypass(options.bypass);
   Cluster cluster(transport, topology,
-                  {options.threads.value_or(0), serve, options.slabs, interrupted});
+                  {options.threads.value_or(0), serve, options.slabs, interrupted,
+                   strategy_of(options.bypass)});
   RoleEnd end;
   try {
     cluster.greet();
-    serve ? run_serve(cluster, options) : run_render(cluster, options);
+    job(cluster, options);
   } catch (const Interrupted& error) {
     // That is how a session ends, at any time.
     if (!serve) end.failure = error.failure();
@@ -60,19 +64,20 @@ RoleEnd run_master(Transport& transport, Topology topology, const Options& optio
   return end;
 }
 
-RoleEnd run_role(Transport& transport, Topology topology, const Options& options) {
+RoleEnd run_role(Transport& transport, Topology topology, const Options& options, ClusterJob job) {
   switch (topology.role_of(transport.rank())) {
     case Role::kMaster:
-      return run_master(transport, topology, options);
+      return run_master(transport, topology, options, job);
     case Role::kCompositor:
-      return {{}, CompositorRole(transport).run()};
+      return {{}, CompositorRole(transport, canvas_of(options.bypass)).run()};
     case Role::kWorker:
-      return {{}, WorkerRole(transport).run()};
+      return {{},
+              WorkerRole(transport, source_of(options.bypass), caster_of(options.bypass)).run()};
   }
   return {};
 }
 
-int run_in_threads(const Options& options) {
+int run_in_threads(const Options& options, ClusterJob job) {
   const Topology topology{options.compositors, options.workers.value_or(1)};
   const LoopbackNetwork network(topology.size());
   std::vector<std::unique_ptr<Transport>> transports;
@@ -81,14 +86,14 @@ int run_in_threads(const Options& options) {
   std::vector<std::jthread> ranks;
   for (int i = 1; i < topology.size(); ++i) {
     ranks.emplace_back(
-        [&, i] { run_role(*transports[static_cast<std::size_t>(i)], topology, options); });
+        [&, i] { run_role(*transports[static_cast<std::size_t>(i)], topology, options, job); });
   }
-  const RoleEnd end = run_role(*transports[0], topology, options);
+  const RoleEnd end = run_role(*transports[0], topology, options, job);
   if (end.failure) throw FatalError(*end.failure);
   return 0;
 }
 
-int run_mpi_rank(const Options& options) {
+int run_mpi_rank(const Options& options, ClusterJob job) {
   MpiTransport transport;
   const auto topology = Topology::for_ranks(transport.size(), options.compositors);
   const bool master = transport.rank() == Rank{0};
@@ -103,7 +108,7 @@ int run_mpi_rank(const Options& options) {
     if (master) throw FatalError(failure);
     return static_cast<int>(failure.status);
   }
-  const RoleEnd end = run_role(transport, *topology, options);
+  const RoleEnd end = run_role(transport, *topology, options, job);
   if (!end.all_ranks_there) {
     if (end.failure) std::fprintf(stderr, "%s\n", end.failure->line().c_str());
     std::fflush(nullptr);
@@ -118,9 +123,9 @@ int run_mpi_rank(const Options& options) {
 
 bool interrupted() { return signalled != 0; }
 
-int run_cluster(const Options& options) {
+int run_cluster(const Options& options, ClusterJob job) {
   catch_signals();
-  return ranks_of_mpi_job() > 1 ? run_mpi_rank(options) : run_in_threads(options);
+  return ranks_of_mpi_job() > 1 ? run_mpi_rank(options, job) : run_in_threads(options, job);
 }
 
 }  // namespace goldthread

@@ -17,6 +17,7 @@
 #include "common/scene/resolve.h"
 #include "common/scene/scene_file.h"
 #include "master/cost_picture.h"
+#include "master/main/bypass.h"
 #include "master/main/program.h"
 #include "master/main/progress.h"
 #include "master/main/scene_setup.h"
@@ -86,11 +87,12 @@ void expect_report_writable(const std::string& path) {
   if (!is_stream(path)) expect_writable(path);
 }
 
-void write_report(Cluster& cluster, const std::string& path, const std::vector<ViewState>& frames,
+void write_report(Cluster& cluster, const Options& options, const std::vector<ViewState>& frames,
                   double load_seconds) {
+  const std::string& path = *options.report;
   cluster.request_counters();
   while (!cluster.counters_complete()) cluster.poll(std::chrono::milliseconds(20));
-  const std::string report = report_json(cluster, frames, load_seconds);
+  const std::string report = report_json(cluster, frames, load_seconds, names_of(options.bypass));
   if (!is_stream(path)) {
     write_whole_file(path, {reinterpret_cast<const unsigned char*>(report.data()), report.size()});
     return;
@@ -161,7 +163,7 @@ void run_render(Cluster& cluster, const Options& options) {
                  double(frame.view.rays) / frame.view.pixels(), 1e3 * shown->held.count());
     views.push_back(std::move(frame.view));
   }
-  if (options.report) write_report(cluster, *options.report, views, load_seconds);
+  if (options.report) write_report(cluster, options, views, load_seconds);
 }
 
 }  // namespace goldthread

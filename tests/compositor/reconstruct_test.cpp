@@ -6,6 +6,7 @@
 #include <cmath>
 #include <functional>
 
+#include "common/image/display.h"
 #include "tests/compositor/packed_samples.h"
 
 namespace goldthread {
@@ -182,6 +183,27 @@ TEST(Reconstruct, GivesEachBandItsRowsOfThePicture) {
     }
     EXPECT_EQ(joined, whole) << "to the bit";
   }
+}
+
+TEST(Reconstruct, WhatIsShownIsThePictureIn8Bits) {
+  const TileGrid grid = TileGrid::squares({100, 70}, 64);
+  const Field field = [](double x, double y) {
+    return Sample{float(std::sin(x)), float(1.5 * std::cos(0.1 * y)), 0.1f, float(x) / 128};
+  };
+  std::vector<SampleArray> arrays;
+  for (const Step step : {Step{1}, Step{3}, kPixelStep})
+    arrays.push_back(sampled(grid, step, field));
+  arrays.emplace_back(grid, band_of(grid, 0, 1));  // without any sample
+  arrays.emplace_back(grid, band_of(grid, 0, 1));
+  place(arrays.back(), {1}, {2}, {3}, field);  // without the coarsest ones
+  std::vector<std::uint8_t> rgb;               // one memory for all
+  for (const SampleArray& array : arrays)
+    for (const Filter filter : kFilters)
+      for (const ColorSpace space : {ColorSpace::kDisplay, ColorSpace::kLinear}) {
+        const glm::dvec3 background{0.25, 0.5, 0.75};
+        reconstruct_shown(array, filter, background, space, rgb);
+        ASSERT_EQ(rgb, display_rgb8(reconstruct(array, filter, background), space));
+      }
 }
 
 }  // namespace

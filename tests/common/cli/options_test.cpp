@@ -328,6 +328,18 @@ TEST(CommandLine, ABenchNeedsASubject) {
             "bench: needs a subject (error, motion, throughput, balance or scale)");
 }
 
+TEST(CommandLine, ABenchOfRanksIsToldWhichThereAre) {
+  for (const std::string subject : {"frames", "stream"}) {
+    const Options read = options({"bench", subject, "-o", "dir", "--bypass", "worker", "--workers",
+                                  "3", "--compositors", "2", "--tile", "32"});
+    EXPECT_EQ(read.bench.subject, subject);
+    EXPECT_TRUE(read.bypass.worker);
+    EXPECT_EQ(read.workers, 3);
+    EXPECT_EQ(read.compositors, 2);
+    EXPECT_EQ(read.tile_px, 32);
+  }
+}
+
 TEST(CommandLine, ABenchTakesItsOwnOptionsAndNeedsNoScene) {
   const Options plain = options({"bench", "error", "-o", "dir"});
   EXPECT_EQ(plain.command, Command::kBench);

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <bit>
 #include <cmath>
 #include <limits>
 #include <random>
@@ -54,6 +55,32 @@ TEST(Display, ClampsWhatIsOutsideAndShowsNanAsBlack) {
     EXPECT_EQ(shown(2, space), 255);
     EXPECT_EQ(shown(infinity, space), 255);
     EXPECT_EQ(shown(std::nanf(""), space), 0);
+  }
+}
+
+TEST(Display, IsTheCurveAndTheRoundingExactlyAroundEachThreshold) {
+  for (int level = 0; level < 256; ++level) {
+    const double middle = (level + 0.5) / 255;
+    const auto around = [&](double threshold, ColorSpace space, const auto& exact) {
+      auto bits = std::bit_cast<std::uint32_t>(static_cast<float>(threshold)) - 300;
+      for (int i = 0; i < 600; ++i, ++bits) {
+        const auto value = std::bit_cast<float>(bits);
+        ASSERT_EQ(shown(value, space), exact(value)) << value;
+      }
+    };
+    around(middle, ColorSpace::kDisplay,
+           [](float value) { return static_cast<int>(std::lround(std::min(value, 1.0f) * 255)); });
+    around(linear_from_srgb(middle), ColorSpace::kLinear,
+           [](float value) { return int{to_8_bits(srgb_from_linear(double(value)))}; });
+  }
+}
+
+TEST(Display, IsTheCurveExactlyForAnyFloat) {
+  std::mt19937 random(2);
+  for (int i = 0; i < 300000; ++i) {
+    const auto value = std::bit_cast<float>(static_cast<std::uint32_t>(random()) >> 2);
+    ASSERT_EQ(shown(value, ColorSpace::kLinear), to_8_bits(srgb_from_linear(double(value))))
+        << value;
   }
 }
 
