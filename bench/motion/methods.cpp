@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <map>
 
+#include "bench/error/thread_clock.h"
 #include "bench/motion/refined_view.h"
 #include "common/tile/update_pattern.h"
 #include "compositor/aged_samples.h"

@@ -52,6 +52,8 @@ int run(const Options& options) {
     case Command::kInfo:
       return run_info(options);
     case Command::kBench:
+      if (options.bench.subject == "scale" && ranks_of_mpi_job() > 1)
+        return time_mpi_messages(options);
       return speaks() ? run_bench(options) : 0;
     case Command::kRender:
     case Command::kServe:

@@ -17,6 +17,9 @@ int run_info(const Options& options);
 int run_bench(const Options& options);
 int run_error_bench(const Options& options);
 int run_motion_bench(const Options& options);
+int run_scale_bench(const Options& options);
+/// A rank of an MPI job: measures messages between its first two, for `bench scale`.
+int time_mpi_messages(const Options& options);
 
 /// What the master does once all ranks are there.
 class Cluster;
