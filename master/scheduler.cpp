@@ -7,7 +7,7 @@
 
 namespace goldthread {
 
-Scheduler::Scheduler(const std::vector<int>& capacity) {
+Scheduler::Scheduler(const std::vector<int>& capacity) : longest_wait_(capacity.size()) {
   for (const int places : capacity) {
     Worker worker;
     worker.capacity = places;
@@ -41,6 +41,7 @@ void Scheduler::queue(const CostHistory& costs) {
     worker.waiting.clear();
     worker.waiting_us = 0;
   }
+  longest_wait_ = LargestOf(workers_.size());
   unowned_.clear();
   std::vector<double> urgency(tiles_.size());
   for (std::uint32_t i = 0; i < tiles_.size(); ++i) {
@@ -61,11 +62,17 @@ void Scheduler::queue(const CostHistory& costs) {
       unowned_.push_back({i});
       continue;
     }
-    Worker& owner = workers_[static_cast<std::size_t>(tiles_[i].owner)];
-    owner.waiting.push_back({i});
-    owner.waiting_us += tiles_[i].cost_us;
+    const auto owner = static_cast<std::size_t>(tiles_[i].owner);
+    workers_[owner].waiting.push_back({i});
+    add_waiting(owner, tiles_[i].cost_us);
   }
   open_ = tiles_.size();
+}
+
+void Scheduler::add_waiting(std::size_t worker, double us) {
+  Worker& owner = workers_[worker];
+  owner.waiting_us += us;
+  longest_wait_.set(worker, owner.waiting_us / std::max(1, owner.capacity));
 }
 
 std::optional<TileId> Scheduler::take(int worker) {
@@ -73,7 +80,7 @@ std::optional<TileId> Scheduler::take(int worker) {
   if (!own.waiting.empty()) {
     const TileId tile = own.waiting.front();
     own.waiting.pop_front();
-    own.waiting_us -= tiles_[tile.value].cost_us;
+    add_waiting(static_cast<std::size_t>(worker), -tiles_[tile.value].cost_us);
     return tile;
   }
   if (unowned_.empty()) return take_over(worker);
@@ -83,17 +90,15 @@ std::optional<TileId> Scheduler::take(int worker) {
 }
 
 std::optional<TileId> Scheduler::take_over(int worker) {
-  const auto busiest =
-      std::max_element(workers_.begin(), workers_.end(), [](const Worker& a, const Worker& b) {
-        return a.waiting_us / std::max(1, a.capacity) < b.waiting_us / std::max(1, b.capacity);
-      });
-  if (busiest->waiting.empty() || std::cmp_equal(busiest - workers_.begin(), worker)) return {};
+  const std::size_t index = longest_wait_.index();
+  Worker& busiest = workers_[index];
+  if (busiest.waiting.empty() || std::cmp_equal(index, worker)) return {};
   // The last one waits longest: until its owner has come through all before it.
-  const TileId tile = busiest->waiting.back();
-  const double wait_us = busiest->waiting_us / std::max(1, busiest->capacity - 1);
+  const TileId tile = busiest.waiting.back();
+  const double wait_us = busiest.waiting_us / std::max(1, busiest.capacity - 1);
   if (tiles_[tile.value].all_cost_us >= wait_us) return {};
-  busiest->waiting.pop_back();
-  busiest->waiting_us -= tiles_[tile.value].cost_us;
+  busiest.waiting.pop_back();
+  add_waiting(index, -tiles_[tile.value].cost_us);
   return tile;
 }
 
@@ -142,7 +147,7 @@ void Scheduler::worker_lost(int worker) {
   unowned_.insert(unowned_.begin(), lost.held.begin(), lost.held.end());
   lost.held.clear();
   lost.waiting.clear();
-  lost.waiting_us = 0;
+  add_waiting(static_cast<std::size_t>(worker), -lost.waiting_us);
   for (Tile& tile : tiles_)
     if (tile.owner == worker) tile.owner = -1;
 }

@@ -16,6 +16,7 @@
 
 #include "common/tile/tile_grid.h"
 #include "master/cost_history.h"
+#include "master/largest_of.h"
 
 namespace goldthread {
 
@@ -80,10 +81,13 @@ class Scheduler {
   void queue(const CostHistory& costs);
   std::optional<TileId> take(int worker);
   std::optional<TileId> take_over(int worker);
+  /// `us` more, or less, wait for this worker.
+  void add_waiting(std::size_t worker, double us);
   /// What `worker` has done of the open step, which is not done any more.
   std::vector<TileId> take_back(int worker);
 
   std::vector<Worker> workers_;
+  LargestOf longest_wait_;  ///< waiting_us of each worker / its capacity
   std::vector<Tile> tiles_;
   std::deque<TileId> unowned_;  ///< in order
   Step step_ = kNoStep;

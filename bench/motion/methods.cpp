@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <map>
 
-#include "bench/error/thread_clock.h"
 #include "bench/motion/refined_view.h"
 #include "common/tile/update_pattern.h"
 #include "compositor/aged_samples.h"

@@ -2,9 +2,9 @@
 #include "bench/motion/motion_scene.h"
 
 #include <algorithm>
+#include <ctime>
 
 #include "bench/error/frame.h"
-#include "bench/error/thread_clock.h"
 #include "common/tile/tile_grid.h"
 
 namespace goldthread::bench {
@@ -15,6 +15,18 @@ constexpr std::size_t kBatch = 1024;
 constexpr int kTrueRays = 3;  ///< of a pixel's row and column
 
 }  // namespace
+
+double thread_seconds() {
+  timespec time{};
+  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &time);
+  return double(time.tv_sec) + 1e-9 * double(time.tv_nsec);
+}
+
+double thread_seconds_of(const std::function<void()>& work) {
+  const double start = thread_seconds();
+  work();
+  return thread_seconds() - start;
+}
 
 MotionScene motion_scene(const Subject& subject, int threads) {
   MotionScene scene;

@@ -3,6 +3,7 @@
 // The scene that is looked at in motion, rays through it whose cost is counted, and pictures of
 // them.
 
+#include <functional>
 #include <glm/glm.hpp>
 #include <memory>
 #include <span>
@@ -14,6 +15,11 @@
 #include "worker/ray_caster.h"
 
 namespace goldthread::bench {
+
+/// Processor time of the calling thread, in seconds: what else the machine does is not in it.
+double thread_seconds();
+/// What `work` takes of it.
+double thread_seconds_of(const std::function<void()>& work);
 
 struct MotionScene {
   std::shared_ptr<const CommittedScene> committed;

@@ -3,7 +3,6 @@
 
 #include <algorithm>
 
-#include "bench/error/thread_clock.h"
 #include "common/tile/tile_grid.h"
 
 namespace goldthread::bench {

@@ -47,7 +47,7 @@ struct Recorder {
     report.views.push_back(name + ", " + work);
     report.prices.push_back(prices);
     report.thread_seconds.push_back(1e-6 * us);
-    return {name, work, cost_image(now, prices), cost_image(before, prices)};
+    return {name, work, cost_record(now, prices), cost_record(before, prices)};
   }
 };
 

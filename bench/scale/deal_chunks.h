@@ -6,7 +6,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "bench/scale/cost_image.h"
+#include "bench/scale/cost_record.h"
 
 namespace goldthread::bench {
 

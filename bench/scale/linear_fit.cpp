@@ -3,48 +3,51 @@
 
 #include <algorithm>
 #include <cmath>
+#include <vector>
 
 namespace goldthread::bench {
 namespace {
 
-/// With the terms divided by the time: the sums of the normal equations for the target 1.
-struct Sums {
-  double aa = 0, ab = 0, bb = 0, a = 0, b = 0;
-};
+constexpr int kRounds = 30;
 
-double squares(const Sums& s, double first, double second) {
-  return first * first * s.aa + 2 * first * second * s.ab + second * second * s.bb -
-         2 * (first * s.a + second * s.b);
+/// Least squares with weights, neither term negative.
+LinearFit weighted_fit(std::span<const TimedTerms> measured, std::span<const double> weights) {
+  double aa = 0, ab = 0, bb = 0, at = 0, bt = 0;
+  for (std::size_t i = 0; i < measured.size(); ++i) {
+    const auto [a, b] = measured[i].x;
+    aa += weights[i] * a * a;
+    ab += weights[i] * a * b;
+    bb += weights[i] * b * b;
+    at += weights[i] * a * measured[i].time;
+    bt += weights[i] * b * measured[i].time;
+  }
+  // Of terms in proportion to each other the determinant is roundoff.
+  const double determinant = aa * bb - ab * ab;
+  if (determinant > 1e-12 * aa * bb) {
+    const LinearFit both{(at * bb - bt * ab) / determinant, (bt * aa - at * ab) / determinant, 0};
+    if (both.first >= 0 && both.second >= 0) return both;
+  }
+  const LinearFit first{aa > 0 ? at / aa : 0, 0, 0}, second{0, bb > 0 ? bt / bb : 0, 0};
+  const auto gain = [&](const LinearFit& fit) { return fit.first * at + fit.second * bt; };
+  return gain(first) >= gain(second) ? first : second;
 }
 
 }  // namespace
 
 LinearFit fit_linear(std::span<const TimedTerms> measured) {
-  Sums s;
-  for (const TimedTerms& each : measured) {
-    if (!(each.time > 0)) continue;
-    const double a = each.x[0] / each.time, b = each.x[1] / each.time;
-    s.aa += a * a;
-    s.ab += a * b;
-    s.bb += b * b;
-    s.a += a;
-    s.b += b;
-  }
-  const double first_alone = s.aa > 0 ? s.a / s.aa : 0, second_alone = s.bb > 0 ? s.b / s.bb : 0;
+  std::vector<double> weights(measured.size(), 1);
   LinearFit fit;
-  // Of terms in proportion to each other the determinant is roundoff.
-  const double determinant = s.aa * s.bb - s.ab * s.ab;
-  if (determinant > 1e-12 * s.aa * s.bb) {
-    fit.first = (s.a * s.bb - s.b * s.ab) / determinant;
-    fit.second = (s.b * s.aa - s.a * s.ab) / determinant;
+  for (int round = 0; round < kRounds; ++round) {
+    fit = weighted_fit(measured, weights);
+    for (std::size_t i = 0; i < measured.size(); ++i) {
+      const double model = fit.at(measured[i].x[0], measured[i].x[1]);
+      weights[i] = model > 0 ? 1 / (model * model) : 0;
+    }
   }
-  if (determinant <= 1e-12 * s.aa * s.bb || fit.first < 0 || fit.second < 0) {
-    const bool first = squares(s, first_alone, 0) <= squares(s, 0, second_alone);
-    fit = {first ? first_alone : 0, first ? 0 : second_alone, 0};
+  for (const TimedTerms& each : measured) {
+    const double model = fit.at(each.x[0], each.x[1]);
+    if (model > 0) fit.worst = std::max(fit.worst, std::abs(each.time / model - 1));
   }
-  for (const TimedTerms& each : measured)
-    if (each.time > 0)
-      fit.worst = std::max(fit.worst, std::abs(fit.at(each.x[0], each.x[1]) / each.time - 1));
   return fit;
 }
 

@@ -7,8 +7,8 @@
 #include <thread>
 
 #include "bench/error/statistics.h"
-#include "bench/error/thread_clock.h"
 #include "bench/scale/linear_fit.h"
+#include "bench/scale/thread_time.h"
 #include "common/base/result.h"
 #include "common/transport/loopback.h"
 
@@ -63,12 +63,12 @@ std::pair<double, double> burst(Transport& transport, Rank peer, std::size_t byt
   std::vector<Buffer> messages;
   for (std::size_t i = 0; i < count; ++i) messages.push_back(message_of(bytes));
   transport.send(peer, message_of(0, {Order::kBurst, static_cast<std::uint32_t>(count)}));
-  const double seconds = thread_seconds_of([&] {
+  const double us = thread_us_of([&] {
     for (Buffer& message : messages) transport.send(peer, std::move(message));
     transport.flush(std::chrono::duration_cast<std::chrono::milliseconds>(kPatience));
   });
   const double receive_us = value_in<double>(next_message(transport));
-  return {1e6 * seconds / double(count), receive_us / double(count)};
+  return {us / double(count), receive_us / double(count)};
 }
 
 double there_and_back_us(Transport& transport, Rank peer, std::size_t bytes) {
@@ -113,7 +113,7 @@ void answer_messages(Transport& transport) {
       transport.send(asking, std::move(message));
       continue;
     }
-    const double us = 1e6 * thread_seconds_of([&] {
+    const double us = thread_us_of([&] {
       for (std::uint32_t i = 0; i < header.count; ++i) next_message(transport);
     });
     Buffer answer(sizeof(us));

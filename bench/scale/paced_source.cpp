@@ -1,12 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "bench/scale/paced_source.h"
 
-#include <sys/prctl.h>
-
 #include <algorithm>
-#include <chrono>
 #include <cmath>
-#include <thread>
 
 namespace goldthread::bench {
 namespace {
@@ -18,7 +14,7 @@ void black(std::span<Sample> samples, std::span<std::uint32_t> surfaces) {
 
 }  // namespace
 
-PacedSource::PacedSource(const CostImage& image, ImageSize size, double us)
+PacedSource::PacedSource(const CostRecord& image, ImageSize size, double us)
     : size_(size), columns_(image.columns), rows_(image.rows) {
   double all = 0;
   for (const StepCost& block : image.steps.back()) all += block.us;
@@ -43,14 +39,24 @@ CastCounts PacedSource::count(std::span<const PixelPosition> positions) const {
 
 CastCounts PacedSource::cast(std::span<const PixelPosition> positions, std::span<Sample> samples,
                              std::span<std::uint32_t> surfaces) const {
-  const auto begin = std::chrono::steady_clock::now();
   const CastCounts counts = count(positions);
   black(samples, surfaces);
-  // A sleep that ends 50 µs late, as the kernel's default has it, would be a tenth of a batch.
-  constexpr unsigned long kSlackNs = 1000;
-  prctl(PR_SET_TIMERSLACK, kSlackNs);
-  std::this_thread::sleep_until(begin + std::chrono::nanoseconds(counts.samples));
+  sleep(std::chrono::nanoseconds(counts.samples));
   return counts;
+}
+
+void PacedSource::sleep(std::chrono::nanoseconds length) const {
+  using Clock = std::chrono::steady_clock;
+  const auto begin = Clock::now();
+  const auto late_of_this_thread = [&]() -> std::chrono::nanoseconds& {
+    const std::lock_guard lock(mutex_);
+    return late_[std::this_thread::get_id()];
+  };
+  // Nobody else changes it; a map's entries stay where they are.
+  std::chrono::nanoseconds& late = late_of_this_thread();
+  const auto end = begin + length - std::min(late, length);
+  std::this_thread::sleep_until(end);
+  late = Clock::now() - begin - length + late;
 }
 
 CastCounts UnpacedSource::cast(std::span<const PixelPosition> positions, std::span<Sample> samples,

@@ -18,6 +18,10 @@ void PromptWorkers::say(Rank from, ToMaster message) {
   inbox_.push_back({from, encode(std::move(message))});
 }
 
+void PromptWorkers::beat() {
+  for (int rank = 1; rank < topology_.size(); ++rank) say({rank}, Heartbeat{});
+}
+
 std::optional<Envelope> PromptWorkers::receive() {
   if (inbox_.empty()) return {};
   Envelope envelope = std::move(inbox_.front());

@@ -31,6 +31,8 @@ class PromptWorkers final : public Transport {
   };
   /// Has everything that was sent done and reported.
   Answered answer();
+  /// All ranks live.
+  void beat();
 
  private:
   void say(Rank from, ToMaster message);

@@ -8,7 +8,7 @@
 #include <utility>
 
 #include "bench/error/frame.h"
-#include "bench/error/thread_clock.h"
+#include "bench/scale/thread_time.h"
 #include "worker/refine_tile.h"
 
 namespace goldthread::bench {
@@ -60,7 +60,7 @@ struct Tile {
 CountedStep advance(Tile& tile, std::uint32_t id, Step to) {
   const Step from{static_cast<std::uint16_t>(to.value - 1)};
   std::optional<RefinedTile> refined;
-  const double seconds = thread_seconds_of([&] {
+  const double us = thread_us_of([&] {
     refined = refine_tile(tile.view, {{}, {id}, from, to}, std::move(tile.refinement),
                           [] { return false; });
   });
@@ -69,7 +69,7 @@ CountedStep advance(Tile& tile, std::uint32_t id, Step to) {
           double(refined->counts.samples),
           double(refined->samples.packed.size()),
           refined->quality.squared_error,
-          1e6 * seconds,
+          us,
           tile.counter->take_rays()};
 }
 
@@ -150,8 +150,8 @@ std::vector<LinearFit> fit_steps(const CountedView& view) {
   return prices;
 }
 
-CostImage cost_image(const CountedView& view, const std::vector<LinearFit>& prices) {
-  CostImage image;
+CostRecord cost_record(const CountedView& view, const std::vector<LinearFit>& prices) {
+  CostRecord image;
   image.columns = view.grid.columns() * kBlocksAcross;
   image.rows = view.grid.rows() * kBlocksAcross;
   for (std::size_t s = 0; s < view.steps.size(); ++s) {

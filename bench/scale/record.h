@@ -7,7 +7,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "bench/scale/cost_image.h"
+#include "bench/scale/cost_record.h"
 #include "bench/scale/linear_fit.h"
 #include "common/scene/scene.h"
 #include "common/tile/refinement.h"
@@ -50,6 +50,6 @@ CountedView count_view(const SampleSource& source, const ImageSettings& image,
 std::vector<LinearFit> fit_steps(const CountedView& view);
 
 /// The view's costs in blocks, by these prices of each step.
-CostImage cost_image(const CountedView& view, const std::vector<LinearFit>& prices);
+CostRecord cost_record(const CountedView& view, const std::vector<LinearFit>& prices);
 
 }  // namespace goldthread::bench

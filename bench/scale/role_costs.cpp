@@ -5,9 +5,9 @@
 #include <cstring>
 
 #include "bench/error/statistics.h"
-#include "bench/error/thread_clock.h"
 #include "bench/scale/linear_fit.h"
 #include "bench/scale/prompt_workers.h"
+#include "bench/scale/thread_time.h"
 #include "common/protocol/wire.h"
 #include "compositor/sample_array.h"
 #include "master/cluster.h"
@@ -19,7 +19,8 @@ constexpr int kTile = 64;
 constexpr int kLeastTiles = 256, kMostTiles = 16384;
 constexpr int kTilesPerWorker = 4;
 constexpr int kLeastPlaces = 128;  ///< quanta at once, so that the clock's own time does not count
-constexpr int kSteps = 5;
+constexpr int kViews = 3;
+constexpr int kSteps = 4;
 constexpr int kPlacings = 32;
 
 /// Tiles for so many workers, in a picture as square as can be.
@@ -30,22 +31,32 @@ TileGrid grid_for(int workers) {
   return TileGrid::squares({across * kTile, tiles / across * kTile}, kTile);
 }
 
-double us_of(const std::function<void()>& work) { return 1e6 * thread_seconds_of(work); }
-
-/// What handling answers took, round by round.
+/// What handling answers took.
+struct Handling {
+  double us = 0;
+  double messages = 0;
+  double each_us() const { return messages > 0 ? us / messages : 0; }
+};
+/// In the middle of steps each answer has another quantum given out; at their ends none has.
 struct Rounds {
-  std::vector<TimedTerms> terms;  ///< messages, and quanta that were sent in answer
-  std::size_t sent = 0;           ///< quanta that wait to be answered
+  Handling middle;
+  Handling end;
 };
 
-/// Works a step off.
+/// Works a step off. Before that all ranks are heard of: on a busy machine this may take seconds.
 void finish_step(Cluster& cluster, PromptWorkers& workers, Rounds& rounds) {
+  workers.beat();
+  cluster.poll(std::chrono::microseconds(0));
   const Step before = cluster.view().cast();
   std::size_t answered = workers.answer().quanta;
   while (cluster.view().cast() == before) {
-    const double us = us_of([&] { cluster.poll(std::chrono::microseconds(0)); });
+    const double us = thread_us_of([&] { cluster.poll(std::chrono::microseconds(0)); });
     const std::size_t next = workers.answer().quanta;
-    rounds.terms.push_back({{double(answered), double(next)}, us});
+    if (next == answered || next == 0) {
+      Handling& handling = next == 0 ? rounds.end : rounds.middle;
+      handling.us += us;
+      handling.messages += double(answered);
+    }
     answered = next;
   }
 }
@@ -68,22 +79,21 @@ MasterCosts measure_master(const Subject& subject, int workers) {
   std::vector<double> begin_us, open_us;
   Rounds rounds;
   // The first view is cast without a history, and touches memory.
-  for (int view = 0; view < 3; ++view) {
+  for (int view = 0; view < kViews; ++view) {
     if (view == 1) rounds = {};
-    const double begun = us_of([&] { cluster.begin_view(subject.scene, {grid, {}}); });
+    const double begun = thread_us_of([&] { cluster.begin_view(subject.scene, {grid, {}}); });
     if (view > 0) begin_us.push_back(begun);
     finish_step(cluster, transport, rounds);
     for (int step = 1; step < kSteps; ++step) {
-      const double opened = us_of([&] { cluster.refine_further(); });
+      const double opened = thread_us_of([&] { cluster.refine_further(); });
       if (view > 0) open_us.push_back(opened);
       finish_step(cluster, transport, rounds);
     }
   }
   MasterCosts costs;
   costs.workers = workers;
-  const LinearFit handling = fit_linear(rounds.terms);
-  costs.done_us = handling.first;
-  costs.supply_us = handling.second;
+  costs.done_us = rounds.end.each_us();
+  costs.supply_us = std::max(0.0, rounds.middle.each_us() - costs.done_us);
   const double opened = median(open_us);
   costs.queue_us = std::max(0.0, opened - supplied * costs.supply_us) / tiles;
   costs.begin_us = std::max(0.0, median(begin_us) - opened) / workers;
@@ -107,7 +117,7 @@ PlacingCosts measure_placing() {
       const auto from = static_cast<std::uint16_t>(step - 1);
       Buffer message = encode(ToCompositor(Samples{
           {1}, {0}, {from}, {step}, static_cast<std::uint32_t>(places.size()), std::move(packed)}));
-      us.push_back(us_of([&] {
+      us.push_back(thread_us_of([&] {
         const auto decoded = decode<ToCompositor>(std::move(message));
         array.place(std::get<Samples>(*decoded));
       }));

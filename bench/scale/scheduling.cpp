@@ -22,7 +22,8 @@ TileGrid grid_of(const TileGrid& whole, std::size_t tiles) {
 
 Scheduling::Scheduling(const FrameWork& before, std::vector<std::uint32_t> tiles, int workers,
                        int capacity)
-    : tiles_(std::move(tiles)),
+    : workers_(workers),
+      tiles_(std::move(tiles)),
       grid_(grid_of(before.grid, tiles_.size())),
       scheduler_(std::vector<int>(std::size_t(workers), capacity)) {
   costs_.fit(grid_);
@@ -41,10 +42,10 @@ void Scheduling::open() {
     scheduler_.open_step(costs_);
 }
 
-std::optional<std::uint32_t> Scheduling::next(int worker) {
-  const auto quantum = scheduler_.next(worker);
-  if (!quantum) return {};
-  return tiles_[quantum->tile.value];
+std::span<const std::uint32_t> Scheduling::next(int worker) {
+  quantum_.clear();
+  if (const auto quantum = scheduler_.next(worker)) quantum_.push_back(tiles_[quantum->tile.value]);
+  return quantum_;
 }
 
 void Scheduling::done(int worker, std::uint32_t tile, const StepCost& cost) {

@@ -4,10 +4,10 @@
 // known beforehand is what the tiles cost in the frame before.
 
 #include <cstdint>
-#include <optional>
+#include <span>
 #include <vector>
 
-#include "bench/scale/cost_image.h"
+#include "bench/scale/cost_record.h"
 #include "master/scheduler.h"
 
 namespace goldthread::bench {
@@ -19,14 +19,25 @@ class Scheduling {
 
   /// Opens the first step, or the next one.
   void open();
-  /// The tile that `worker` is to take through the open step, if it has room and there is one.
-  std::optional<std::uint32_t> next(int worker);
+  /// The quantum that `worker` is to cast next: tiles to take through the open step, one after the
+  /// other. Empty if it has no room or there is none. Valid until the next call.
+  std::span<const std::uint32_t> next(int worker);
+  /// Calls give(worker), which says whether there was something, as a master does that has opened a
+  /// step.
+  template <class Give>
+  void supply_all(const Give& give) const {
+    for (int worker = 0; worker < workers_; ++worker)
+      while (give(worker)) {
+      }
+  }
   /// `worker` has done so, at this cost.
   void done(int worker, std::uint32_t tile, const StepCost& cost);
   bool finished() const { return scheduler_.finished(); }
   std::size_t tiles() const { return tiles_.size(); }
 
  private:
+  int workers_;
+  std::vector<std::uint32_t> quantum_;
   std::vector<std::uint32_t> tiles_;  ///< by the scheduler's number
   TileGrid grid_;
   CostHistory costs_;

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <functional>
 #include <queue>
+#include <span>
 #include <utility>
 #include <vector>
 
@@ -73,9 +74,9 @@ class Simulation {
   /// The master above tells a sub-master, which hears of it at `at`.
   void open_part_at(int master, double at);
   void open_part(Master& master, double at);
-  void supply_all(Master& master, double& now);
-  void supply(Master& master, int worker, double& now);
-  void compute(int worker, std::uint32_t tile, double at);
+  /// Whether there was a quantum for the worker. It leaves at `now`, which moves on.
+  bool give(Master& master, int worker, double& now);
+  void compute(int worker, std::span<const std::uint32_t> tiles, double at);
   void on_tile_done(const Event& event);
   void on_samples(const Event& event);
   void on_band_ready(const Event& event);
@@ -140,42 +141,41 @@ Simulation::Simulation(const FrameWork& now, const FrameWork& before, const Clus
       std::count_if(band_tiles_.begin(), band_tiles_.end(), [](std::size_t n) { return n > 0; }));
 }
 
-void Simulation::supply(Master& master, int worker, double& now) {
-  while (const auto tile = master.scheduling.next(worker)) {
-    now += master.costs.supply_us + send_us(bytes_.quantum);
-    ++master.server.messages;
-    compute(master.first_worker + worker, *tile,
-            now + transit(bytes_.quantum) + receive_us(bytes_.quantum));
-  }
-}
-
-void Simulation::supply_all(Master& master, double& now) {
-  for (int worker = 0; worker < master.workers; ++worker) supply(master, worker, now);
+bool Simulation::give(Master& master, int worker, double& now) {
+  const auto tiles = master.scheduling.next(worker);
+  if (tiles.empty()) return false;
+  const double bytes = bytes_.quantum * double(tiles.size());
+  now += master.costs.supply_us + send_us(bytes);
+  ++master.server.messages;
+  compute(master.first_worker + worker, tiles, now + transit(bytes) + receive_us(bytes));
+  return true;
 }
 
 /// The quanta of a worker come in the order in which they are sent, so each takes the thread that
 /// is free first.
-void Simulation::compute(int worker, std::uint32_t tile, double at) {
+void Simulation::compute(int worker, std::span<const std::uint32_t> tiles, double at) {
   const auto first = threads_.begin() + std::ptrdiff_t(worker) * shape_.threads;
   Thread& thread = *std::min_element(
       first, first + shape_.threads,
       [](const Thread& a, const Thread& b) { return a.free_us < b.free_us; });
-  StepCost cost = work_.steps[step_][tile];
-  int& holder = holder_[tile];
-  if (step_ > 0 && holder != worker) {
-    ++result_.taken_over;
-    for (std::size_t earlier = 0; earlier < step_; ++earlier)
-      cost.us += work_.steps[earlier][tile].us;
-  }
-  holder = worker;
   ++result_.quanta;
-  double now = std::max(at, thread.free_us) + cost.us;
-  thread.computed_us += cost.us;
-  const double samples = bytes_.samples + cost.bytes;
-  now += send_us(samples);
-  post({now + transit(samples), 0, Event::Kind::kSamples, worker, tile, step_});
-  now += send_us(bytes_.done);
-  post({now + transit(bytes_.done), 0, Event::Kind::kTileDone, worker, tile, step_});
+  double now = std::max(at, thread.free_us);
+  for (const std::uint32_t tile : tiles) {
+    double us = work_.steps[step_][tile].us;
+    int& holder = holder_[tile];
+    if (step_ > 0 && holder != worker) {
+      ++result_.taken_over;
+      for (std::size_t earlier = 0; earlier < step_; ++earlier) us += work_.steps[earlier][tile].us;
+    }
+    holder = worker;
+    now += us;
+    thread.computed_us += us;
+    const double samples = bytes_.samples + work_.steps[step_][tile].bytes;
+    now += send_us(samples);
+    post({now + transit(samples), 0, Event::Kind::kSamples, worker, tile, step_});
+    now += send_us(bytes_.done);
+    post({now + transit(bytes_.done), 0, Event::Kind::kTileDone, worker, tile, step_});
+  }
   thread.free_us = now;
 }
 
@@ -215,7 +215,7 @@ void Simulation::open_part(Master& master, double at) {
     master.server.messages += std::uint64_t(master.workers);
   }
   master.scheduling.open();
-  supply_all(master, now);
+  master.scheduling.supply_all([&](int worker) { return give(master, worker, now); });
   master.server.end(begin, now);
 }
 
@@ -226,7 +226,8 @@ void Simulation::on_tile_done(const Event& event) {
   ++master.server.messages;
   const int worker = event.from - master.first_worker;
   master.scheduling.done(worker, event.tile, work_.steps[event.step][event.tile]);
-  supply(master, worker, now);
+  while (give(master, worker, now)) {
+  }
   const bool finished = master.scheduling.finished();
   if (finished && two_levels()) {
     now += master.costs.supply_us + send_us(bytes_.small);

@@ -10,7 +10,7 @@
 #include <cstdint>
 
 #include "bench/scale/cluster_model.h"
-#include "bench/scale/cost_image.h"
+#include "bench/scale/cost_record.h"
 
 namespace goldthread::bench {
 
@@ -23,7 +23,7 @@ struct SimulatedFrame {
   double compositor_busy = 0;
   double imbalance = 1;  ///< what the busiest thread computed / the mean of all
   std::uint64_t quanta = 0;
-  std::uint64_t taken_over = 0;  ///< quanta whose earlier steps were cast again
+  std::uint64_t taken_over = 0;  ///< tiles whose earlier steps were cast again
   std::uint64_t top_messages = 0;
   double most_messages = 0;  ///< that a master took or sent, a second
 };

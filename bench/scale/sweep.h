@@ -18,8 +18,8 @@ constexpr int kMostWorkers = 4096;
 struct RecordedView {
   std::string name;  ///< "whole picture"
   std::string work;  ///< "refined to 0.5"
-  CostImage now;
-  CostImage before;
+  CostRecord now;
+  CostRecord before;
 };
 
 struct SweepPoint {

@@ -22,7 +22,7 @@ namespace {
 constexpr int kTile = 64;
 constexpr ImageSize kSize{512, 512};
 constexpr int kMostPaced = 16;
-constexpr double kPacedUs = 600'000, kQuickPacedUs = 200'000;
+constexpr double kPacedUs = 800'000, kQuickPacedUs = 300'000;
 constexpr int kFrames = 5, kQuickFrames = 3;
 constexpr Casting kEveryPixel{{Sampling::kEveryPixel, 0.5, 1}, Update::kAll};
 
@@ -94,10 +94,10 @@ Trial cast_trial(const Subject& subject, const Scene& scene) {
   const CountedView counted = count_view(*source, scene.image, kRefinedCasting, 1);
   return {"cast",          "refined to 0.5",
           scene,           kRefinedCasting,
-          make_ray_caster, work_of(cost_image(counted, fit_steps(counted)), counted.grid)};
+          make_ray_caster, work_of(cost_record(counted, fit_steps(counted)), counted.grid)};
 }
 
-Trial paced_trial(const Scene& scene, const CostImage& whole, double us) {
+Trial paced_trial(const Scene& scene, const CostRecord& whole, double us) {
   const auto paced = std::make_shared<const PacedSource>(whole, scene.image.size, us);
   const CountedView counted = count_view(UnpacedSource(*paced), scene.image, kEveryPixel, 1);
   // What is counted are nanoseconds.
@@ -107,12 +107,12 @@ Trial paced_trial(const Scene& scene, const CostImage& whole, double us) {
           scene,
           kEveryPixel,
           [paced](const auto&, const Camera&, ImageSize) { return paced; },
-          work_of(cost_image(counted, prices), counted.grid)};
+          work_of(cost_record(counted, prices), counted.grid)};
 }
 
 }  // namespace
 
-std::vector<ValidationRow> validate(const Subject& subject, const CostImage& whole,
+std::vector<ValidationRow> validate(const Subject& subject, const CostRecord& whole,
                                     const ClusterModel& model, const ValidationSettings& settings) {
   Scene scene = subject.scene;
   scene.image.size = kSize;

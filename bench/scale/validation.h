@@ -8,7 +8,7 @@
 
 #include "bench/error/subject.h"
 #include "bench/scale/cluster_model.h"
-#include "bench/scale/cost_image.h"
+#include "bench/scale/cost_record.h"
 
 namespace goldthread::bench {
 
@@ -29,7 +29,7 @@ struct ValidationSettings {
 
 /// Rays cast for real by as many workers as there are cores, and paced rays (paced_source.h) that
 /// cost what `whole` says by up to 16. `model` is of messages between threads.
-std::vector<ValidationRow> validate(const Subject& subject, const CostImage& whole,
+std::vector<ValidationRow> validate(const Subject& subject, const CostRecord& whole,
                                     const ClusterModel& model, const ValidationSettings& settings);
 
 }  // namespace goldthread::bench

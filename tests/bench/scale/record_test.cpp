@@ -51,7 +51,7 @@ TEST(Record, StepsAreCountedEachForItself) {
 TEST(Record, CostsAreCountsTimesPricesWhereTheRaysWere) {
   const CountedView view = count_view(TwoHalves(), kImage, kEveryPixel, 1);
   const std::vector<LinearFit> prices(3, LinearFit{2, 0.5, 0});
-  const CostImage image = cost_image(view, prices);
+  const CostRecord image = cost_record(view, prices);
   EXPECT_EQ(image.columns, 8);
   EXPECT_EQ(image.rows, 4);
   const FrameWork work = work_of(image, view.grid);
@@ -61,21 +61,22 @@ TEST(Record, CostsAreCountsTimesPricesWhereTheRaysWere) {
       EXPECT_NEAR(work.steps[step][tile].us, 2 * counted.rays + 0.5 * counted.samples, 1e-6);
       EXPECT_NEAR(work.steps[step][tile].bytes, counted.bytes, 1e-6);
     }
-  // A block on the right costs 2 + 15 µs a ray, one on the left 2 + 5.
-  EXPECT_NEAR(image.steps[2][7].us / image.steps[2][0].us, 17.0 / 7, 0.15);
+  // A ray on the left costs 2 + 5 µs, one on the right 2 + 15.
+  EXPECT_NEAR(image.steps[2][0].us, 7 * view.steps[2][0].block_rays[0], 1e-6);
+  EXPECT_NEAR(image.steps[2][7].us, 17 * view.steps[2][1].block_rays[3], 1e-6);
 }
 
 TEST(Record, PricesOfAStepAddUpToItsTime) {
   CountedView view = count_view(TwoHalves(), kImage, kWholeCasting, 1);
   view.steps[0][0].thread_us = 1000;
   view.steps[0][1].thread_us = 2600;
-  const FrameWork work = work_of(cost_image(view, fit_steps(view)), view.grid);
+  const FrameWork work = work_of(cost_record(view, fit_steps(view)), view.grid);
   EXPECT_NEAR(work.us(), 3600, 1e-6);
   EXPECT_NEAR(work.steps[0][1].us, 2600, 1e-6);
 }
 
 TEST(PacedSource, RaysCostWhatTheImageSays) {
-  CostImage image{2, 1, {{{1, 0, 0}, {3, 0, 0}}}};
+  CostRecord image{2, 1, {{{1, 0, 0}, {3, 0, 0}}}};
   const PacedSource paced(image, {32, 16}, 5120);  // 512 pixels: 10 µs each
   const PixelPosition left{3.5F, 2.5F}, right{20.5F, 2.5F};
   EXPECT_EQ(paced.count(std::span(&left, 1)).samples, 5000U);

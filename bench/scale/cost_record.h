@@ -22,7 +22,7 @@ struct StepCost {
   StepCost& operator+=(const StepCost& other);
 };
 
-struct CostImage {
+struct CostRecord {
   int columns = 0;  ///< of blocks
   int rows = 0;
   std::vector<std::vector<StepCost>> steps;  ///< from step 1; in each the blocks row by row
@@ -39,6 +39,6 @@ struct FrameWork {
 
 /// The image as it would be with `grid`'s pixels. Each block costs what the recorded block at its
 /// place did; sizes need not be multiples.
-FrameWork work_of(const CostImage& image, const TileGrid& grid);
+FrameWork work_of(const CostRecord& image, const TileGrid& grid);
 
 }  // namespace goldthread::bench

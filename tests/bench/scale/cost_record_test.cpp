@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bench/scale/cost_image.h"
+#include "bench/scale/cost_record.h"
 
 #include <gtest/gtest.h>
 
@@ -7,15 +7,15 @@ namespace goldthread::bench {
 namespace {
 
 /// Block (column, row) of the one step costs 1 + column + 10 row.
-CostImage ramp(int columns, int rows) {
-  CostImage image{columns, rows, {{}}};
+CostRecord ramp(int columns, int rows) {
+  CostRecord image{columns, rows, {{}}};
   for (int row = 0; row < rows; ++row)
     for (int column = 0; column < columns; ++column)
       image.steps[0].push_back({double(1 + column + 10 * row), 100, 2});
   return image;
 }
 
-TEST(CostImage, TilesAreSumsOfTheirBlocks) {
+TEST(CostRecord, TilesAreSumsOfTheirBlocks) {
   const FrameWork work = work_of(ramp(4, 4), TileGrid::squares({64, 64}, 32));
   ASSERT_EQ(work.steps.size(), 1U);
   ASSERT_EQ(work.steps[0].size(), 4U);
@@ -26,8 +26,8 @@ TEST(CostImage, TilesAreSumsOfTheirBlocks) {
   EXPECT_DOUBLE_EQ(work.steps[0][3].squared_error, 8);
 }
 
-TEST(CostImage, FourTimesThePixelsCostFourTimesAsMuch) {
-  const CostImage image = ramp(8, 4);
+TEST(CostRecord, FourTimesThePixelsCostFourTimesAsMuch) {
+  const CostRecord image = ramp(8, 4);
   const FrameWork recorded = work_of(image, TileGrid::squares({128, 64}, 64));
   const FrameWork larger = work_of(image, TileGrid::squares({256, 128}, 64));
   EXPECT_DOUBLE_EQ(larger.us(), 4 * recorded.us());
@@ -36,7 +36,7 @@ TEST(CostImage, FourTimesThePixelsCostFourTimesAsMuch) {
   EXPECT_DOUBLE_EQ(larger.steps[0][0].us, 4 * (1 + 2 + 11 + 12));
 }
 
-TEST(CostImage, PicturesOfOtherShapesKeepAllTiles) {
+TEST(CostRecord, PicturesOfOtherShapesKeepAllTiles) {
   const FrameWork work = work_of(ramp(3, 3), TileGrid::squares({100, 70}, 64));
   ASSERT_EQ(work.steps[0].size(), 4U);
   double bytes = 0;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bench/scale/cost_image.h"
+#include "bench/scale/cost_record.h"
 
 #include <cstdint>
 
@@ -28,7 +28,7 @@ StepCost& StepCost::operator+=(const StepCost& other) {
 double FrameWork::us() const { return sum_of(*this, &StepCost::us); }
 double FrameWork::bytes() const { return sum_of(*this, &StepCost::bytes); }
 
-FrameWork work_of(const CostImage& image, const TileGrid& grid) {
+FrameWork work_of(const CostRecord& image, const TileGrid& grid) {
   FrameWork work{grid, {}};
   const int columns = blocks_along(grid.image.width), rows = blocks_along(grid.image.height);
   const auto recorded = [&](int column, int row) {
