@@ -13,8 +13,8 @@ namespace goldthread::bench {
 namespace {
 
 constexpr ImageSize kRecorded{1024, 1024}, kQuickRecorded{512, 512};
-constexpr double kTurn = 2;       ///< degrees since the view before
-constexpr double kClose = 0.45;   ///< of the distance
+constexpr double kTurn = 2;      ///< degrees since the view before
+constexpr double kClose = 0.45;  ///< of the distance
 constexpr int kMasterWorkers[] = {16, 256, 1024, 4096};
 
 Camera close_camera(Camera camera) {
@@ -32,8 +32,8 @@ struct Recorder {
     return count_view(*make_ray_caster(scene, camera, image.size), image, casting, threads);
   }
 
-  /// The view at a camera, and the one before it with the same prices: they differ by what was seen,
-  /// not by what the machine did meanwhile.
+  /// The view at a camera, and the one before it with the same prices: they differ by what was
+  /// seen, not by what the machine did meanwhile.
   RecordedView record(const std::string& name, const Camera& camera, const std::string& work,
                       const Casting& casting) const {
     const CountedView now = count(camera, casting);

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// `goldthread bench scale`: how far one master reaches, simulated. Costs of rays, messages and roles
-// are measured on this machine, then the project's own scheduler deals pictures of 1 to 64 Mpixel to
-// up to 4096 workers that do not exist.
+// `goldthread bench scale`: how far one master reaches, simulated. Costs of rays, messages and
+// roles are measured on this machine, then the project's own scheduler deals pictures of 1 to 64
+// Mpixel to up to 4096 workers that do not exist.
 
 #include <filesystem>
 #include <functional>
@@ -27,8 +27,8 @@ struct ScaleBenchSettings {
 /// Takes a minute, or a quarter of one if quick.
 ScaleReport run_scale_bench(const Subject& subject, const ScaleBenchSettings& settings);
 
-/// Writes report.json, report.md and the plots; what could not be drawn is added to the notes. Throws
-/// FatalError where the folder cannot be written.
+/// Writes report.json, report.md and the plots; what could not be drawn is added to the notes.
+/// Throws FatalError where the folder cannot be written.
 void write_scale_report(ScaleReport& report, const std::filesystem::path& folder);
 
 }  // namespace goldthread::bench

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// What messages of some size cost on a transport, measured between two of its ranks: bursts give the
-// processor time of the sender and the receiver, single messages there and back the time on the
+// What messages of some size cost on a transport, measured between two of its ranks: bursts give
+// the processor time of the sender and the receiver, single messages there and back the time on the
 // way.
 
 #include <functional>
@@ -17,7 +17,7 @@ struct MessageTime {
   double bytes = 0;
   double send_us = 0;     ///< of the sender's thread
   double receive_us = 0;  ///< of the receiver's
-  double transit_us = 0;  ///< half of there and back, less the two above
+  double transit_us = 0;  ///< half of there and back where it is quick, less the two above
 };
 
 struct MeasuredLink {

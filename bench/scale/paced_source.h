@@ -19,7 +19,8 @@ class PacedSource final : public SampleSource {
   /// A picture of `size` whose pixels in all take `us`, shared out as by the image's last step.
   PacedSource(const CostRecord& image, ImageSize size, double us);
 
-  /// Takes as long as its rays cost; what a sleep was too long is taken off the thread's next. The field evaluations that it counts are ns.
+  /// Takes as long as its rays cost; what a sleep was too long is taken off the thread's next. The
+  /// field evaluations that it counts are ns.
   CastCounts cast(std::span<const PixelPosition> positions, std::span<Sample> samples,
                   std::span<std::uint32_t> surfaces) const override;
   /// Counts only.

@@ -10,8 +10,8 @@ namespace goldthread::bench {
 PromptWorkers::PromptWorkers(Topology topology, VolumeInfo volume)
     : topology_(topology), volume_(std::move(volume)) {
   for (int rank = 1; rank < topology_.size(); ++rank)
-    say({rank}, Hello{kProtocolVersion, GOLDTHREAD_VERSION, topology_.role_of({rank}), "host",
-                      "node", 1});
+    say({rank},
+        Hello{kProtocolVersion, GOLDTHREAD_VERSION, topology_.role_of({rank}), "host", "node", 1});
 }
 
 void PromptWorkers::say(Rank from, ToMaster message) {
@@ -41,8 +41,13 @@ PromptWorkers::Answered PromptWorkers::answer() {
     if (const auto* quantum = std::get_if<RenderTile>(&*message)) {
       // Errors and costs that differ, so that the order of tiles is not the order of their numbers.
       const std::uint32_t mixed = quantum->tile.value * 2654435761U >> 16;
-      say(worker, TileDone{quantum->epoch, quantum->tile, quantum->to, 500 + mixed % 1000, 4096,
-                           100000, {1e-3 * (1 + mixed % 97), 1}});
+      say(worker, TileDone{quantum->epoch,
+                           quantum->tile,
+                           quantum->to,
+                           500 + mixed % 1000,
+                           4096,
+                           100000,
+                           {1e-3 * (1 + mixed % 97), 1}});
       ++answered.quanta;
     }
   }

@@ -105,8 +105,8 @@ bool is_last(const Casting& casting, const CountedView& view) {
 
 CountedView count_view(const SampleSource& source, const ImageSettings& image,
                        const Casting& casting, int threads) {
-  CountedView counted{TileGrid::squares(image.size, kTile), {},
-                      samples_per_ray(source, image.size, threads)};
+  CountedView counted{
+      TileGrid::squares(image.size, kTile), {}, samples_per_ray(source, image.size, threads)};
   std::vector<Tile> tiles(counted.grid.count());
   for (std::uint32_t id = 0; id < tiles.size(); ++id) {
     tiles[id].counter = std::make_shared<BlockCounter>(source, counted.grid.rect({id}));
@@ -174,10 +174,10 @@ CostRecord cost_record(const CountedView& view, const std::vector<LinearFit>& pr
       }
       for (std::size_t i = 0; i < share.size(); ++i) {
         const double even = 1.0 / double(share.size());
-        blocks[place(i)] = {all > 0 ? us * share[i] / all : us * even,
-                            tile.rays > 0 ? tile.bytes * tile.block_rays[i] / tile.rays
-                                          : tile.bytes * even,
-                            tile.squared_error * even};
+        blocks[place(i)] = {
+            all > 0 ? us * share[i] / all : us * even,
+            tile.rays > 0 ? tile.bytes * tile.block_rays[i] / tile.rays : tile.bytes * even,
+            tile.squared_error * even};
       }
     }
   }

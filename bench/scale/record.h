@@ -32,7 +32,7 @@ struct CountedStep {
   double samples = 0;  ///< field evaluations
   double bytes = 0;    ///< to the compositor
   double squared_error = 0;
-  double thread_us = 0;                  ///< measured, of the thread's processor
+  double thread_us = 0;                   ///< measured, of the thread's processor
   std::vector<std::uint32_t> block_rays;  ///< of the tile's blocks, row by row
 };
 

@@ -8,9 +8,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-Json json_of(const Affine& cost) {
-  return {{"us", cost.us}, {"usPerByte", cost.us_per_byte}};
-}
+Json json_of(const Affine& cost) { return {{"us", cost.us}, {"usPerByte", cost.us_per_byte}}; }
 
 Json json_of(const MeasuredLink& link) {
   const FittedLink fit = fit_link(link);
@@ -63,6 +61,8 @@ Json json_of(const SweepPoint& point, const std::vector<std::string>& views) {
           {"masterBusy", point.frame.master_busy},
           {"topBusy", point.frame.top_busy},
           {"compositorBusy", point.frame.compositor_busy},
+          {"masterWaitUs", point.frame.master_wait_us},
+          {"compositorsLateUs", point.frame.compositors_late_us},
           {"imbalance", point.frame.imbalance},
           {"quanta", point.frame.quanta},
           {"takenOver", point.frame.taken_over},
@@ -82,9 +82,8 @@ Json views_of(const ScaleReport& report) {
     Json steps = Json::array();
     for (const LinearFit& price : report.prices[i])
       steps.push_back({{"rayUs", price.first}, {"sampleUs", price.second}});
-    views.push_back({{"name", report.views[i]},
-                     {"threadSeconds", report.thread_seconds[i]},
-                     {"steps", steps}});
+    views.push_back(
+        {{"name", report.views[i]}, {"threadSeconds", report.thread_seconds[i]}, {"steps", steps}});
   }
   return views;
 }

@@ -59,7 +59,8 @@ std::vector<Plot> scale_plots(const ScaleReport& report) {
   const auto one = curves_of(report.one_level, 0, true, ", one master");
   curves.insert(curves.end(), one.begin(), one.end());
   const std::string name = "scale-two-levels";
-  plots.push_back({name, script(name, "One and two levels of masters", report.views.front(), curves)});
+  plots.push_back(
+      {name, script(name, "One and two levels of masters", report.views.front(), curves)});
   return plots;
 }
 

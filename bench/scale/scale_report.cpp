@@ -57,9 +57,8 @@ std::vector<std::string> findings(const ScaleReport& report) {
   double worst = 1;
   for (const ValidationRow& row : report.validation)
     if (std::abs(row.ratio() - 1) > std::abs(worst - 1)) worst = row.ratio();
-  found.push_back(
-      fmt::format("simulated over measured time is off 1 by at most {}, at {} clusters",
-                  percent(std::abs(worst - 1)), report.validation.size()));
+  found.push_back(fmt::format("simulated over measured time is off 1 by at most {}, at {} clusters",
+                              percent(std::abs(worst - 1)), report.validation.size()));
   return found;
 }
 
@@ -98,9 +97,9 @@ Table master_table(const ScaleReport& report) {
   for (const MasterCosts& costs : report.model.master)
     table.rows.push_back({"master", std::to_string(costs.workers), number(costs.done_us),
                           number(costs.supply_us), number(costs.queue_us), number(costs.begin_us)});
-  table.rows.push_back({fmt::format("compositor: {} µs and {} ns a byte for a tile's samples",
-                                    number(report.model.place.us),
-                                    number(1e3 * report.model.place.us_per_byte))});
+  table.rows.push_back(
+      {fmt::format("compositor: {} µs and {} ns a byte for a tile's samples",
+                   number(report.model.place.us), number(1e3 * report.model.place.us_per_byte))});
   return table;
 }
 
@@ -144,8 +143,7 @@ Table saturation_table(const ScaleReport& report) {
       const double feeds =
           last.tile_us / quantum_us(report.model, report.model.master_of(last.shape.workers));
       table.rows.push_back({report.views[std::size_t(view)], std::to_string(size),
-                            std::to_string(last.tiles), number(1e-3 * last.tile_us),
-                            number(feeds),
+                            std::to_string(last.tiles), number(1e-3 * last.tile_us), number(feeds),
                             below == curve.end() ? "–" : std::to_string((*below)->shape.workers),
                             below == curve.end() ? "" : limit_of(**below),
                             efficiency(last.frame.efficiency), percent(last.frame.master_busy),
@@ -169,10 +167,9 @@ Table second_level_table(const ScaleReport& report) {
       table.rows.push_back(
           {report.views[std::size_t(view)], std::to_string(size), efficiency(one),
            std::to_string(plan->shape.masters),
-           std::to_string(plan->shape.workers / plan->shape.masters),
-           std::to_string(plan->tile_px), std::to_string(plan->shape.tiles_per_chunk),
-           efficiency(plan->frame.efficiency), number(1e-3 * plan->frame.us),
-           plan->frame.efficiency >= kGoal ? "" : limit_of(*plan),
+           std::to_string(plan->shape.workers / plan->shape.masters), std::to_string(plan->tile_px),
+           std::to_string(plan->shape.tiles_per_chunk), efficiency(plan->frame.efficiency),
+           number(1e-3 * plan->frame.us), plan->frame.efficiency >= kGoal ? "" : limit_of(*plan),
            number(plan->frame.most_messages),
            number(1e6 * double(plan->frame.top_messages) / plan->frame.us)});
     }

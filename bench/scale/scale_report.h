@@ -26,16 +26,16 @@ struct ScaleReport {
   std::string kernel;
   std::string scene;
   ImageSize recorded_size;
-  std::vector<std::string> views;                ///< "whole head, refined to 0.5"
-  std::vector<std::vector<LinearFit>> prices;    ///< of their steps: a ray, a field evaluation
-  std::vector<double> thread_seconds;            ///< of each, as recorded
-  std::vector<MeasuredLink> links;               ///< the simulation uses the last one
+  std::vector<std::string> views;              ///< "whole head, refined to 0.5"
+  std::vector<std::vector<LinearFit>> prices;  ///< of their steps: a ray, a field evaluation
+  std::vector<double> thread_seconds;          ///< of each, as recorded
+  std::vector<MeasuredLink> links;             ///< the simulation uses the last one
   ClusterModel model;
   double placing_residual = 0;
   std::vector<ValidationRow> validation;
   std::vector<SweepPoint> one_level;
-  std::vector<SweepPoint> two_levels;            ///< with 4096 workers
-  std::vector<SweepPoint> with_second_level;     ///< of the first view
+  std::vector<SweepPoint> two_levels;         ///< with 4096 workers
+  std::vector<SweepPoint> with_second_level;  ///< of the first view
   std::vector<std::string> notes;
 };
 

@@ -110,7 +110,9 @@ class Simulation {
   std::size_t step_ = 0;                          ///< that is open, from 0
   int parts_open_ = 0;
   std::size_t bands_open_ = 0;  ///< of the last step
+  double cast_us_ = 0;          ///< when the master knew that all tiles had taken the last step
   double end_us_ = 0;
+  std::uint64_t reports_ = 0;
   std::uint64_t events_posted_ = 0;
   std::priority_queue<Event, std::vector<Event>, std::greater<>> events_;
   SimulatedFrame result_;
@@ -129,12 +131,12 @@ Simulation::Simulation(const FrameWork& now, const FrameWork& before, const Clus
   const int each = shape.workers / shape.masters;
   auto parts = deal_chunks(before, shape.masters, shape.tiles_per_chunk);
   for (int m = 0; m < shape.masters; ++m)
-    masters_.push_back({{},
-                        Scheduling(before, std::move(parts[std::size_t(m)]), each,
-                                   shape.threads + shape.spare),
-                        model.master_of(each),
-                        m * each,
-                        each});
+    masters_.push_back(
+        {{},
+         Scheduling(before, std::move(parts[std::size_t(m)]), each, shape.threads + shape.spare),
+         model.master_of(each),
+         m * each,
+         each});
   for (std::uint32_t tile = 0; tile < now.grid.count(); ++tile)
     ++band_tiles_[std::size_t(band_index(now.grid, {tile}, shape.compositors))];
   bands_open_ = std::size_t(
@@ -155,9 +157,9 @@ bool Simulation::give(Master& master, int worker, double& now) {
 /// is free first.
 void Simulation::compute(int worker, std::span<const std::uint32_t> tiles, double at) {
   const auto first = threads_.begin() + std::ptrdiff_t(worker) * shape_.threads;
-  Thread& thread = *std::min_element(
-      first, first + shape_.threads,
-      [](const Thread& a, const Thread& b) { return a.free_us < b.free_us; });
+  Thread& thread =
+      *std::min_element(first, first + shape_.threads,
+                        [](const Thread& a, const Thread& b) { return a.free_us < b.free_us; });
   ++result_.quanta;
   double now = std::max(at, thread.free_us);
   for (const std::uint32_t tile : tiles) {
@@ -187,8 +189,8 @@ void Simulation::begin_view() {
   // The master above sorts the chunks, and tells each sub-master the view and its tiles.
   double now = double(work_.grid.count()) / shape_.tiles_per_chunk * masters_[0].costs.queue_us;
   for (int m = 0; m < shape_.masters; ++m) {
-    const double bytes = bytes_.view + bytes_.tile_number *
-                                           double(masters_[std::size_t(m)].scheduling.tiles());
+    const double bytes =
+        bytes_.view + bytes_.tile_number * double(masters_[std::size_t(m)].scheduling.tiles());
     now += masters_[0].costs.begin_us + send_us(bytes);
     open_part_at(m, now + transit(bytes));
   }
@@ -222,6 +224,8 @@ void Simulation::open_part(Master& master, double at) {
 void Simulation::on_tile_done(const Event& event) {
   Master& master = master_of(event.from);
   const double begin = master.server.begin(event.us);
+  result_.master_wait_us += begin - event.us;
+  ++reports_;
   double now = begin + receive_us(bytes_.done) + master.costs.done_us;
   ++master.server.messages;
   const int worker = event.from - master.first_worker;
@@ -241,6 +245,7 @@ void Simulation::on_tile_done(const Event& event) {
 /// Of a cluster with one master `now` is when it has nothing else to do.
 void Simulation::open_next_step(double& now) {
   if (++step_ == work_.steps.size()) {
+    cast_us_ = now;
     end_us_ = std::max(end_us_, now);
     return;
   }
@@ -308,6 +313,8 @@ SimulatedFrame Simulation::run() {
     }
   }
   result_.us = end_us_;
+  result_.master_wait_us /= double(std::max<std::uint64_t>(1, reports_));
+  result_.compositors_late_us = end_us_ - cast_us_;
   result_.efficiency = work_.us() / (double(threads_.size()) * end_us_);
   double most = 0, all = 0;
   for (const Thread& thread : threads_) {

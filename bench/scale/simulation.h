@@ -21,7 +21,9 @@ struct SimulatedFrame {
   double master_busy = 0;
   double top_busy = 0;  ///< the master above, if there is one
   double compositor_busy = 0;
-  double imbalance = 1;  ///< what the busiest thread computed / the mean of all
+  double master_wait_us = 0;       ///< mean of a report, until its master takes it
+  double compositors_late_us = 0;  ///< from the last tile's report until all bands were held
+  double imbalance = 1;            ///< what the busiest thread computed / the mean of all
   std::uint64_t quanta = 0;
   std::uint64_t taken_over = 0;  ///< tiles whose earlier steps were cast again
   std::uint64_t top_messages = 0;

@@ -11,7 +11,7 @@ namespace {
 
 constexpr int kTile = 64;
 constexpr int kMegapixel = 1024 * 1024;
-constexpr int kWorkersPerCompositor = 16;
+constexpr int kWorkersPerCompositor = 8;
 constexpr int kChunksPerMaster = 16;
 constexpr std::uint32_t kMostTiles = 1U << 16;  ///< more are too many for any master
 
@@ -48,9 +48,8 @@ void run(std::vector<SweepPoint>& points, const std::vector<RecordedView>& views
          const ClusterModel& model, const SweepSettings& settings) {
   std::vector<SweepPoint*> order;
   for (SweepPoint& point : points) order.push_back(&point);
-  std::stable_sort(order.begin(), order.end(), [](const SweepPoint* a, const SweepPoint* b) {
-    return a->tiles > b->tiles;
-  });
+  std::stable_sort(order.begin(), order.end(),
+                   [](const SweepPoint* a, const SweepPoint* b) { return a->tiles > b->tiles; });
   in_parallel(
       settings.threads, order.size(),
       [&](std::size_t i) {
@@ -72,6 +71,10 @@ std::string limit_of(const SweepPoint& point) {
   const double masters = std::max(frame.master_busy, frame.top_busy);
   if (std::max(masters, frame.compositor_busy) >= kBusy)
     return masters >= frame.compositor_busy ? "master" : "compositors";
+  // Dear tiles go first, so cheap ones come in a crowd: a queue may be long that is short on
+  // average.
+  if (frame.compositors_late_us > frame.us / 4) return "compositors";
+  if (frame.master_wait_us > point.tile_us / 2) return "master";
   if (point.tiles < unsigned(2 * point.shape.workers * point.shape.threads)) return "too few tiles";
   return "ends of steps";
 }
@@ -111,9 +114,8 @@ const SweepPoint* second_level(const std::vector<SweepPoint>& points, int view, 
     if (best == nullptr || efficiency > best->frame.efficiency) best = &point;
     if (efficiency < goal) continue;
     const auto is_less = [&](const SweepPoint& than) {
-      return point.shape.masters != than.shape.masters
-                 ? point.shape.masters < than.shape.masters
-                 : efficiency > than.frame.efficiency;
+      return point.shape.masters != than.shape.masters ? point.shape.masters < than.shape.masters
+                                                       : efficiency > than.frame.efficiency;
     };
     if (fewest == nullptr || is_less(*fewest)) fewest = &point;
   }
@@ -125,8 +127,8 @@ std::vector<SweepPoint> sweep_like(const SweepPoint& plan, const std::vector<Rec
   const int each = plan.shape.workers / plan.shape.masters;
   std::vector<SweepPoint> points;
   for (const int workers : settings.workers)
-    points.push_back(point_of(plan.view, plan.megapixels, plan.tile_px, workers,
-                              std::max(1, workers / each)));
+    points.push_back(
+        point_of(plan.view, plan.megapixels, plan.tile_px, workers, std::max(1, workers / each)));
   run(points, views, model, settings);
   return points;
 }

@@ -23,7 +23,7 @@ struct RecordedView {
 };
 
 struct SweepPoint {
-  int view = 0;       ///< of the recorded ones
+  int view = 0;  ///< of the recorded ones
   int megapixels = 1;
   int tile_px = 64;
   std::uint32_t tiles = 0;

@@ -12,8 +12,8 @@ struct BenchSubject {
   std::string_view name;
   int (*run)(const Options& options);
 };
-constexpr BenchSubject kSubjects[] = {{"error", run_error_bench}, {"motion", run_motion_bench},
-                                      {"scale", run_scale_bench}};
+constexpr BenchSubject kSubjects[] = {
+    {"error", run_error_bench}, {"motion", run_motion_bench}, {"scale", run_scale_bench}};
 
 }  // namespace
 

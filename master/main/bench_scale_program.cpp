@@ -31,11 +31,20 @@ Result<bench::MeasuredLink> link_of(const std::filesystem::path& file) {
 Result<bench::MeasuredLink> time_mpi(const std::filesystem::path& folder, bool quick) {
   if (std::filesystem::exists(folder / kMessages)) return link_of(folder / kMessages);
   const std::filesystem::path own = folder / "mpi";
-  std::vector<std::string> command{"env", "OMPI_ALLOW_RUN_AS_ROOT=1",
-                                   "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1", "mpirun", "--oversubscribe",
-                                   "--bind-to", "none", "-n", "2",
+  std::vector<std::string> command{"env",
+                                   "OMPI_ALLOW_RUN_AS_ROOT=1",
+                                   "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1",
+                                   "mpirun",
+                                   "--oversubscribe",
+                                   "--bind-to",
+                                   "none",
+                                   "-n",
+                                   "2",
                                    std::filesystem::read_symlink("/proc/self/exe").string(),
-                                   "bench", "scale", "-o", own.string()};
+                                   "bench",
+                                   "scale",
+                                   "-o",
+                                   own.string()};
   if (quick) command.emplace_back("--quick");
   try {
     std::filesystem::remove(own / kMessages);
@@ -56,8 +65,8 @@ int time_mpi_messages(const Options& options) {
   if (transport.rank() == kAnswering) bench::answer_messages(transport);
   if (transport.rank() != kAsking) return 0;
   const std::filesystem::path folder = report_folder(options.output);
-  const bench::MeasuredLink link{
-      "MPI", bench::time_messages(transport, kAnswering, options.bench.quick)};
+  const bench::MeasuredLink link{"MPI",
+                                 bench::time_messages(transport, kAnswering, options.bench.quick)};
   bench::write_text(folder / kMessages, bench::link_json(link));
   return 0;
 }

@@ -19,11 +19,12 @@ TEST(MessageFile, IsReadAsItWasWritten) {
 }
 
 TEST(MessageFile, OfOtherThingsIsRefused) {
-  for (const char* text :
-       {"", "{", "[]", "{}", R"({"ranks": 1, "times": []})", R"({"ranks": "x", "times": []})",
-        R"({"ranks": "x", "times": [1]})", R"({"ranks": "x", "times": [{"bytes": 1}]})",
-        R"({"ranks": "x", "times": [{"bytes": 1, "sendUs": -1, "receiveUs": 1, "transitUs": 1}]})",
-        R"({"ranks": "x", "times": [{"bytes": "1", "sendUs": 1, "receiveUs": 1, "transitUs": 1}]})"}) {
+  for (
+      const char* text :
+      {"", "{", "[]", "{}", R"({"ranks": 1, "times": []})", R"({"ranks": "x", "times": []})",
+       R"({"ranks": "x", "times": [1]})", R"({"ranks": "x", "times": [{"bytes": 1}]})",
+       R"({"ranks": "x", "times": [{"bytes": 1, "sendUs": -1, "receiveUs": 1, "transitUs": 1}]})",
+       R"({"ranks": "x", "times": [{"bytes": "1", "sendUs": 1, "receiveUs": 1, "transitUs": 1}]})"}) {
     const auto read = read_link(text, "messages.json");
     ASSERT_FALSE(read) << text;
     EXPECT_EQ(read.failure().where, "messages.json");

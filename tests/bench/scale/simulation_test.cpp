@@ -81,9 +81,9 @@ TEST(Simulation, OneWorkerTakesTheSumOfTilesAndMessages) {
   // The worker always has the next tile when it has sent the one before.
   const double computed = 9000 + 2 * (link.send.at(samples) + link.send.at(done));
   // The last tile's samples reach the compositor, whose word reaches the master.
-  const double last = link.send.at(samples) + link.transit.at(samples) +
-                      link.receive.at(samples) + model.place.at(1000) + link.send.at(ready) +
-                      link.transit.at(ready) + link.receive.at(ready) + 5;
+  const double last = link.send.at(samples) + link.transit.at(samples) + link.receive.at(samples) +
+                      model.place.at(1000) + link.send.at(ready) + link.transit.at(ready) +
+                      link.receive.at(ready) + 5;
   const SimulatedFrame frame = frame_of(costs, model, shape_of(1));
   EXPECT_NEAR(frame.us, first + computed + last, 1e-6);
   EXPECT_NEAR(frame.efficiency, 9000 / frame.us, 1e-9);
@@ -135,6 +135,7 @@ TEST(Simulation, ACompositorThatIsTheLimitTakesItsTimeForEachByte) {
   const SimulatedFrame frame = frame_of(costs, model, shape_of(50, 0));
   EXPECT_NEAR(frame.us, kTiles * 2010 + 100, 1);
   EXPECT_GT(frame.compositor_busy, 0.99);
+  EXPECT_NEAR(frame.compositors_late_us, (kTiles - 2) * 2010, 2010);
 }
 
 TEST(Simulation, BandsShareTheSamplesOut) {
