@@ -35,14 +35,17 @@ LinearFit weighted_fit(std::span<const TimedTerms> measured, std::span<const dou
 }  // namespace
 
 LinearFit fit_linear(std::span<const TimedTerms> measured) {
-  std::vector<double> weights(measured.size(), 1);
+  // What residuals are relative to: at first the times, then halfway to each new model, without
+  // which two models may follow each other for ever.
+  std::vector<double> scale, weights(measured.size());
+  for (const TimedTerms& each : measured) scale.push_back(each.time);
   LinearFit fit;
   for (int round = 0; round < kRounds; ++round) {
+    for (std::size_t i = 0; i < measured.size(); ++i)
+      weights[i] = scale[i] > 0 ? 1 / (scale[i] * scale[i]) : 0;
     fit = weighted_fit(measured, weights);
-    for (std::size_t i = 0; i < measured.size(); ++i) {
-      const double model = fit.at(measured[i].x[0], measured[i].x[1]);
-      weights[i] = model > 0 ? 1 / (model * model) : 0;
-    }
+    for (std::size_t i = 0; i < measured.size(); ++i)
+      scale[i] = (scale[i] + fit.at(measured[i].x[0], measured[i].x[1])) / 2;
   }
   for (const TimedTerms& each : measured) {
     const double model = fit.at(each.x[0], each.x[1]);
