@@ -9,7 +9,8 @@
 
 namespace goldthread {
 
-Scheduler::Scheduler(const std::vector<int>& capacity, Strategy strategy) : strategy_(strategy) {
+Scheduler::Scheduler(const std::vector<int>& capacity, Strategy strategy)
+    : strategy_(strategy), longest_wait_(capacity.size()) {
   for (const int places : capacity) {
     Worker worker;
     worker.capacity = places;
@@ -92,20 +93,36 @@ void Scheduler::deal_by_cost(const CostHistory& costs) {
   }
 }
 
-void Scheduler::put(Queue& queue, TileId tile) {
-  queue.tiles.push_back(tile);
-  queue.us += tiles_[tile.value].cost_us;
+int Scheduler::source_for(int worker) const {
+  constexpr int kNobody = -1;
+  return workers_[static_cast<std::size_t>(worker)].waiting.tiles.empty() ? kNobody : worker;
 }
 
-TileId Scheduler::take(Queue& queue, std::deque<TileId>::iterator at) {
+void Scheduler::put(int owner, TileId tile) {
+  Queue& queue = queue_of(owner);
+  queue.tiles.push_back(tile);
+  queue.us += tiles_[tile.value].cost_us;
+  note_waiting(owner);
+}
+
+TileId Scheduler::take(int owner, std::deque<TileId>::const_iterator at) {
+  Queue& queue = queue_of(owner);
   const TileId tile = *at;
   queue.tiles.erase(at);
   queue.us -= tiles_[tile.value].cost_us;
+  note_waiting(owner);
   return tile;
+}
+
+void Scheduler::note_waiting(int owner) {
+  if (owner < 0) return;
+  const auto index = static_cast<std::size_t>(owner);
+  longest_wait_.set(index, workers_[index].waiting.us / workers_[index].threads());
 }
 
 void Scheduler::queue(const CostHistory& costs) {
   for (Worker& worker : workers_) worker.waiting = {};
+  longest_wait_ = LargestOf(workers_.size());
   unowned_ = {};
   std::vector<double> urgency(tiles_.size());
   double total_us = 0;
@@ -127,7 +144,7 @@ void Scheduler::queue(const CostHistory& costs) {
                    [&](std::uint32_t a, std::uint32_t b) { return urgency[a] > urgency[b]; });
   for (const std::uint32_t i : order) {
     const int owner = tiles_[i].owner;
-    put(owner < 0 ? unowned_ : workers_[static_cast<std::size_t>(owner)].waiting, {i});
+    put(owner, {i});
   }
   open_ = tiles_.size();
   joined_us_ = std::min(kJoinedUs, kJoinedShare * total_us / threads());
@@ -135,6 +152,7 @@ void Scheduler::queue(const CostHistory& costs) {
 
 bool Scheduler::is_due(const Worker& taker, TileId tile, double waiting_us, int threads) const {
   if (std::cmp_less(taker.held.size(), taker.threads())) return true;
+  if (taker.threads() == this->threads()) return true;  // there is nobody else
   const double cost_us = tiles_[tile.value].cost_us;
   // Nobody would take over what has so much more to it than this step.
   if (tiles_[tile.value].all_cost_us > kSpareRounds * cost_us) return true;
@@ -143,15 +161,16 @@ bool Scheduler::is_due(const Worker& taker, TileId tile, double waiting_us, int 
 
 std::optional<TileId> Scheduler::take(int worker) {
   Worker& taker = workers_[static_cast<std::size_t>(worker)];
-  Queue& queue = queue_for(taker);
+  const int source = source_for(worker);
+  const Queue& queue = queue_of(source);
   if (queue.tiles.empty())
     return strategy_.share == Share::kOnDemand ? take_over(worker) : std::nullopt;
   // What it was dealt once and for all nobody else waits for.
-  const bool own = &queue == &taker.waiting;
+  const bool own = source == worker;
   if (strategy_.share == Share::kOnDemand &&
       !is_due(taker, queue.tiles.front(), queue.us, own ? taker.threads() : threads()))
     return {};
-  return take(queue, queue.tiles.begin());
+  return take(source, queue.tiles.begin());
 }
 
 double Scheduler::held_us(const Worker& worker) const {
@@ -162,15 +181,13 @@ double Scheduler::held_us(const Worker& worker) const {
 }
 
 std::optional<TileId> Scheduler::take_over(int worker) {
-  const auto busiest =
-      std::max_element(workers_.begin(), workers_.end(), [](const Worker& a, const Worker& b) {
-        return a.waiting.us / a.threads() < b.waiting.us / b.threads();
-      });
-  Queue& queue = busiest->waiting;
-  if (queue.tiles.empty() || std::cmp_equal(busiest - workers_.begin(), worker)) return {};
+  const std::size_t index = longest_wait_.index();
+  const Queue& queue = workers_[index].waiting;
+  const Worker& busiest = workers_[index];
+  if (queue.tiles.empty() || std::cmp_equal(index, worker)) return {};
   // Of what the owner holds about half is done.
-  const double held = held_us(*busiest) / 2;
-  const auto end_without = [&](double us) { return (queue.us + held - us) / busiest->threads(); };
+  const double held = held_us(busiest) / 2;
+  const auto end_without = [&](double us) { return (queue.us + held - us) / busiest.threads(); };
   // The one with which both end soonest; of equals the last one, which waits longest.
   auto best = queue.tiles.end();
   double soonest = end_without(0);
@@ -183,8 +200,8 @@ std::optional<TileId> Scheduler::take_over(int worker) {
   }
   if (best == queue.tiles.end()) return {};
   Worker& taker = workers_[static_cast<std::size_t>(worker)];
-  if (!is_due(taker, *best, queue.us, busiest->threads())) return {};
-  return take(queue, best);
+  if (!is_due(taker, *best, queue.us, busiest.threads())) return {};
+  return take(static_cast<int>(index), best);
 }
 
 double Scheduler::expected_us(TileId tile) const {
@@ -217,13 +234,14 @@ std::optional<Quantum> Scheduler::next(int worker) {
 
 std::optional<TileId> Scheduler::join(int worker) {
   Worker& taker = workers_.at(static_cast<std::size_t>(worker));
-  Queue& queue = queue_for(taker);
+  const int source = source_for(worker);
+  const Queue& queue = queue_of(source);
   if (joined_us_ <= 0 || taker.held.empty() || taker.held.back().size() >= kMostJoined ||
       queue.tiles.empty())
     return {};
   const double with_it = taker.newest_us + tiles_[queue.tiles.front().value].cost_us;
   if (with_it > joined_us_) return {};
-  const TileId tile = take(queue, queue.tiles.begin());
+  const TileId tile = take(source, queue.tiles.begin());
   taker.newest_us = with_it;
   hold(taker, tile);
   tiles_[tile.value].owner = worker;
@@ -265,15 +283,21 @@ void Scheduler::worker_lost(int worker) {
   Worker& lost = workers_.at(static_cast<std::size_t>(worker));
   lost.lost = true;
   Queue again;
-  for (const auto& quantum : lost.held)
-    for (const TileId tile : quantum) put(again, tile);
-  for (const TileId tile : lost.waiting.tiles) put(again, tile);
-  for (const TileId tile : take_back(worker)) put(again, tile);
-  for (const TileId tile : unowned_.tiles) put(again, tile);
+  const auto give_back = [&](const auto& tiles) {
+    for (const TileId tile : tiles) {
+      again.tiles.push_back(tile);
+      again.us += tiles_[tile.value].cost_us;
+    }
+  };
+  for (const auto& quantum : lost.held) give_back(quantum);
+  give_back(lost.waiting.tiles);
+  give_back(take_back(worker));
+  give_back(unowned_.tiles);
   unowned_ = std::move(again);
   lost.held.clear();
   lost.held_us = 0;
   lost.waiting = {};
+  note_waiting(worker);
   for (Tile& tile : tiles_)
     if (tile.owner == worker) tile.owner = -1;
 }

@@ -18,6 +18,7 @@
 
 #include "common/tile/tile_grid.h"
 #include "master/cost_history.h"
+#include "master/largest_of.h"
 
 namespace goldthread {
 
@@ -134,11 +135,15 @@ class Scheduler {
   std::vector<int> alive() const;
   int threads() const;
   void queue(const CostHistory& costs);
-  void put(Queue& queue, TileId tile);
-  TileId take(Queue& queue, std::deque<TileId>::iterator at);
-  Queue& queue_for(Worker& worker) {
-    return worker.waiting.tiles.empty() ? unowned_ : worker.waiting;
+  /// What waits for a worker, or of kNobody for whoever comes first.
+  Queue& queue_of(int owner) {
+    return owner < 0 ? unowned_ : workers_[static_cast<std::size_t>(owner)].waiting;
   }
+  /// Where `worker` takes its next tile from.
+  int source_for(int worker) const;
+  void put(int owner, TileId tile);
+  TileId take(int owner, std::deque<TileId>::const_iterator at);
+  void note_waiting(int owner);
   bool is_due(const Worker& taker, TileId tile, double waiting_us, int threads) const;
   double expected_us(TileId tile) const;
   bool has_room(const Worker& worker) const;
@@ -151,6 +156,7 @@ class Scheduler {
 
   Strategy strategy_;
   std::vector<Worker> workers_;
+  LargestOf longest_wait_{0};  ///< what waits for each worker / its threads, µs
   std::vector<Tile> tiles_;
   Queue unowned_;
   double joined_us_ = 0;  ///< that joined tiles may take

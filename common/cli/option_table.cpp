@@ -351,9 +351,9 @@ constexpr OptionRow kTable[] = {
 std::span<const OptionRow> option_table() { return kTable; }
 
 bool is_bench_subject(std::string_view name) {
-  // The last two are what the bench of throughput starts in each rank.
-  constexpr std::array<std::string_view, 7> kSubjects = {"error", "motion", "throughput", "balance",
-                                                         "scale", "frames", "stream"};
+  // The last three are what the benches of throughput and scale start in each rank.
+  constexpr std::array<std::string_view, 8> kSubjects = {
+      "error", "motion", "throughput", "balance", "scale", "frames", "stream", "messages"};
   return std::find(kSubjects.begin(), kSubjects.end(), name) != kSubjects.end();
 }
 

@@ -18,7 +18,8 @@ struct BenchSubject {
 constexpr BenchSubject kSubjects[] = {
     {"error", run_error_bench},           {"motion", run_motion_bench},
     {"throughput", run_throughput_bench}, {"balance", run_balance_bench},
-    {"frames", run_frames_bench, true},   {"stream", run_stream_bench, true},
+    {"scale", run_scale_bench},           {"frames", run_frames_bench, true},
+    {"stream", run_stream_bench, true},   {"messages", run_messages_bench, true},
 };
 
 const BenchSubject* find_subject(const BenchOptions& bench) {

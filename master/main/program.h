@@ -27,9 +27,11 @@ int run_error_bench(const Options& options);
 int run_motion_bench(const Options& options);
 int run_balance_bench(const Options& options);
 int run_throughput_bench(const Options& options);
-/// In every rank of an MPI job: what the bench of throughput has measured there.
+int run_scale_bench(const Options& options);
+/// In every rank of an MPI job: what the benches of throughput and scale have measured there.
 int run_frames_bench(const Options& options);
 int run_stream_bench(const Options& options);
+int run_messages_bench(const Options& options);
 
 /// Whether the user has asked to end (SIGINT, SIGTERM).
 bool interrupted();

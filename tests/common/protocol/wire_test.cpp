@@ -74,7 +74,7 @@ TEST(Message, HasANameOfItsOwnInItsDirection) {
 TEST(Message, IsLittleEndianWithoutPadding) {
   const Buffer bytes = encode(ToWorker(
       RenderTiles{{{.epoch = {0x04030201}, .tile = {0x08070605}, .from = {5}, .to = {0x0a09}}}}));
-  const std::array<int, 17> expected{5, 1, 0, 0, 0, 1, 2, 3, 4, 5, 6, 7, 8, 5, 0, 9, 0x0a};
+  const std::array<int, 17> expected{8, 1, 0, 0, 0, 1, 2, 3, 4, 5, 6, 7, 8, 5, 0, 9, 0x0a};
   ASSERT_EQ(bytes.size(), expected.size());
   for (std::size_t i = 0; i < expected.size(); ++i) {
     EXPECT_EQ(std::to_integer<int>(bytes.data()[i]), expected[i]) << i;
@@ -128,7 +128,7 @@ TEST(BulkMessage, TravelsWithoutACopyAndAlignedTo16) {
       EXPECT_EQ(reinterpret_cast<std::uintptr_t>(received.data()) % 16, 0u);
     }
   });
-  EXPECT_EQ(bulk, 3) << "Samples, BandPicture and EncodedBand";
+  EXPECT_EQ(bulk, 5) << "Samples, BandPicture, EncodedBand, AdvanceRays and RaysAdvanced";
 }
 
 TEST(BulkMessage, IsAlignedTo16AlsoInMemoryMadeForReceiving) {
