@@ -18,6 +18,7 @@
 #include <vector>
 
 #include "common/base/result.h"
+#include "common/transport/lost_peer.h"
 
 namespace goldthread {
 namespace {
@@ -46,6 +47,7 @@ void check(int code, const char* call) {
 class MpiTransport::Impl {
  public:
   Impl() {
+    outlive_lost_peers();
     int provided = 0;
     check(MPI_Init_thread(nullptr, nullptr, MPI_THREAD_FUNNELED, &provided), "MPI_Init_thread");
     MPI_Comm_set_errhandler(MPI_COMM_WORLD, MPI_ERRORS_RETURN);
