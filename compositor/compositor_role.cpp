@@ -18,6 +18,8 @@ namespace {
 
 constexpr std::chrono::milliseconds kIdleWait{50};
 constexpr std::chrono::seconds kFarewell{2};
+/// Neither this rank nor the master has much to do.
+constexpr CoreNeed kCoreNeed{.sender = 0.5, .receiver = 0.5};
 
 }  // namespace
 
@@ -30,11 +32,17 @@ bool CompositorRole::run() {
     try {
       while (auto message = post_.receive<ToCompositor>()) {
         const auto begin = std::chrono::steady_clock::now();
-        std::visit([&](auto& value) { on(std::move(value)); }, message->second);
+        std::visit(
+            [&](auto& value) {
+              post_.acknowledge(message->first, value);
+              on(std::move(value));
+            },
+            message->second);
         busy_ += std::chrono::steady_clock::now() - begin;
         heartbeat_.beat(post_);  // also when messages never end
       }
       forward_input();
+      probe_link();
       heartbeat_.beat(post_);
     } catch (const std::exception& error) {
       post_.tell_failure(error);
@@ -52,6 +60,16 @@ void CompositorRole::on(const BeginSession& message) {
                       "was given a session without compositors", "", ExitStatus::kClusterFailed});
   }
   compositors_ = static_cast<int>(message.compositors);
+  to_master_.emplace(Rank{0}, message.compression, kCoreNeed);
+}
+
+void CompositorRole::probe_link() {
+  if (!to_master_) return;
+  while (auto probe = to_master_->probe()) post_.to_master(std::move(*probe));
+}
+
+void CompositorRole::on(const Receipt& message) {
+  if (to_master_) to_master_->received(message);
 }
 
 void CompositorRole::on(const BeginView& message) {
@@ -73,8 +91,8 @@ void CompositorRole::on(const BeginView& message) {
   told_step_ = kNoStep;
   tell_step();  // of a band without tiles, which nothing else will
   if (early_.empty() || early_.front().epoch > view_->epoch) return;
-  for (const Samples& early : std::exchange(early_, {})) {
-    if (early.epoch == view_->epoch) place(early);
+  for (Samples& early : std::exchange(early_, {})) {
+    if (early.epoch == view_->epoch) place(std::move(early));
   }
 }
 
@@ -89,11 +107,13 @@ void CompositorRole::on(Samples message) {
     keep_early(std::move(message));
     return;
   }
-  if (message.epoch == view_->epoch) place(message);
+  if (message.epoch == view_->epoch) place(std::move(message));
 }
 
-void CompositorRole::place(const Samples& message) {
-  if (!(in_parts() ? aged_->place(message) : samples_->place(message))) {
+void CompositorRole::place(Samples message) {
+  if (!unpack_bulk(codec_, message.tag, samples_layout(message.count, !in_parts()),
+                   message.packed) ||
+      !(in_parts() ? aged_->place(message) : samples_->place(message))) {
     throw FatalError({"rank " + std::to_string(post_.rank().value),
                       "was sent samples that do not fit tile " + std::to_string(message.tile.value),
                       "start the same build of goldthread on every host",
@@ -148,6 +168,9 @@ void CompositorRole::on(const CollectBand& message) {
     const auto pixels = picture(message.filter, {});
     band.pixels = Buffer(pixels.size() * sizeof(float));
     std::memcpy(band.pixels.data(), pixels.data(), band.pixels.size());
+    if (to_master_)
+      band.tag = to_master_->pack(codec_, band.pixels,
+                                  pixel_layout(std::int64_t{band.rect.width} * band.rect.height));
   }
   post_.to_master(std::move(band));
 }
@@ -178,7 +201,10 @@ void CompositorRole::on(Reply message) {
 }
 
 void CompositorRole::on(const ReportCounters&) {
-  post_.to_master(Counters{post_.sent(), std::chrono::duration<double>(busy_).count()});
+  std::vector<LinkCount> links;
+  if (to_master_) links.push_back(to_master_->count());
+  post_.to_master(
+      Counters{post_.sent(), std::move(links), std::chrono::duration<double>(busy_).count()});
 }
 
 void CompositorRole::on(const Stop& message) { stop_ = message; }

@@ -8,6 +8,7 @@
 #include <optional>
 #include <vector>
 
+#include "common/codec/bulk_link.h"
 #include "common/transport/heartbeat.h"
 #include "common/transport/post.h"
 #include "compositor/aged_band.h"
@@ -36,8 +37,11 @@ class CompositorRole {
   void on(Broadcast message);
   void on(Reply message);
   void on(const ReportCounters& message);
+  void on(const Receipt& message);
+  void on(const LinkProbe&) {}
   void on(const Stop& message);
-  void place(const Samples& message);
+  void place(Samples message);
+  void probe_link();
   /// To the master, if all tiles have taken another one.
   void tell_step();
   void keep_early(Samples message);
@@ -59,6 +63,8 @@ class CompositorRole {
   /// Samples that overtook the BeginView of their epoch, on their way from another rank. All of one
   /// epoch, the newest: it shows that the master has given up the views before.
   std::vector<Samples> early_;
+  RowCodec codec_;
+  std::optional<BulkLink> to_master_;
   PictureAssembly assembly_;
   std::chrono::steady_clock::duration busy_{0};
   std::unique_ptr<Gateway> gateway_;

@@ -91,8 +91,11 @@ void Cluster::begin_session() {
                                              : std::max(1, cores / static_cast<int>(neighbours));
     }
     if (state.role == Role::kCompositor) {
-      post_.to_compositor(rank, BeginSession{1, options_.interactive,
-                                             static_cast<std::uint32_t>(topology_.compositors)});
+      // What it sends of a session is a page's, and compressed for that already.
+      post_.to_compositor(
+          rank,
+          BeginSession{1, options_.interactive, static_cast<std::uint32_t>(topology_.compositors),
+                       options_.interactive ? Compression::kOff : options_.compression});
     }
   }
   for (int w = 0; w < topology_.workers; ++w) {
@@ -100,7 +103,8 @@ void Cluster::begin_session() {
     auto& places = capacity[static_cast<std::size_t>(w)];
     ranks_[static_cast<std::size_t>(rank.value)].threads = places;
     post_.to_worker(rank, BeginSession{static_cast<std::uint32_t>(places), options_.interactive,
-                                       static_cast<std::uint32_t>(topology_.compositors)});
+                                       static_cast<std::uint32_t>(topology_.compositors),
+                                       options_.compression});
     ++places;  // the spare tile
   }
   scheduler_ = Scheduler(capacity);
@@ -301,7 +305,12 @@ void Cluster::send_to_workers(const ToWorker& message) {
 }
 
 void Cluster::handle(Rank from, ToMaster message) {
-  std::visit([&](auto& value) { on(from, std::move(value)); }, message);
+  std::visit(
+      [&](auto& value) {
+        post_.acknowledge(from, value);
+        on(from, std::move(value));
+      },
+      message);
 }
 
 std::optional<ClusterEvent> Cluster::poll(std::chrono::microseconds at_most) {
@@ -332,6 +341,7 @@ void Cluster::on(Rank from, Counters message) {
   RankState& state = ranks_.at(static_cast<std::size_t>(from.value));
   state.counted = true;
   state.sent = std::move(message.sent);
+  state.links = std::move(message.links);
   state.busy_seconds = message.busy_seconds;
 }
 

@@ -34,6 +34,7 @@ class Interrupted : public FatalError {
 struct ClusterOptions {
   int threads = 0;           ///< per worker; 0: the cores of its node / the workers on it
   bool interactive = false;  ///< compute threads give way to everything else
+  Compression compression = Compression::kOff;
   /// Asked while waiting for other ranks; true ends the job with Interrupted.
   std::function<bool()> interrupted = [] { return false; };
 };
@@ -49,6 +50,7 @@ struct RankState {
   double busy_seconds = 0;         ///< thread time spent computing since the start
   bool counted = false;            ///< has answered the last request_counters()
   std::vector<MessageCount> sent;  ///< as of that answer
+  std::vector<LinkCount> links;    ///< likewise
 };
 
 /// What a picture was worth after a step: sums over its pixels, as TileQuality.
@@ -149,6 +151,7 @@ class Cluster {
   void handle(Rank from, ToMaster message);
   void on(Rank from, const Hello& message);
   void on(Rank, Heartbeat) {}
+  void on(Rank, LinkProbe) {}
   void on(Rank from, LoadProgress message);
   void on(Rank from, VolumeLoaded message);
   void on(Rank from, VolumeMapped message);

@@ -71,6 +71,26 @@ Json bytes_of(const std::vector<RankState>& ranks) {
   return Json(sums);
 }
 
+/// What ranks know of their links and did about it; MB are 10⁶ bytes.
+Json links_of(const std::vector<RankState>& ranks) {
+  Json list = Json::array();
+  for (std::size_t i = 0; i < ranks.size(); ++i) {
+    for (const LinkCount& link : ranks[i].links) {
+      list.push_back({{"from", i},
+                      {"to", link.to},
+                      {"megabytesPerSecond", 1e-6 * link.bytes_per_second},
+                      {"ratio", link.ratio},
+                      {"compressMegabytesPerSecond", 1e-6 * link.compress_per_s},
+                      {"decompressMegabytesPerSecond", 1e-6 * link.decompress_per_s},
+                      {"messages", link.messages},
+                      {"compressed", link.coded},
+                      {"rawBytes", link.raw_bytes},
+                      {"sentBytes", link.sent_bytes}});
+    }
+  }
+  return list;
+}
+
 }  // namespace
 
 double estimated_error(const ViewState& view) {
@@ -86,6 +106,7 @@ std::string report_json(const Cluster& cluster, const std::vector<ViewState>& fr
                        {"ranks", ranks_of(cluster.ranks())},
                        {"tiles", frames.empty() ? Json::array() : tiles_of(frames.back())},
                        {"bytes", bytes_of(cluster.ranks())},
+                       {"links", links_of(cluster.ranks())},
                        {"loadSeconds", load_seconds},
                        {"version", GOLDTHREAD_VERSION}};
   return report.dump(2) + "\n";

@@ -21,6 +21,8 @@ constexpr std::chrono::seconds kFarewell{2};
 constexpr std::chrono::milliseconds kLoadingWait{20};
 /// That the master measures a camera's movement by.
 constexpr std::size_t kVisiblePoints = 64;
+/// Workers compute all the time, compositors mostly wait.
+constexpr CoreNeed kCoreNeed{.sender = 1, .receiver = 0.5};
 
 }  // namespace
 
@@ -40,11 +42,19 @@ bool WorkerRole::run() {
   while (!stop_) {
     try {
       while (auto message = post_.receive<ToWorker>()) {
-        std::visit([&](auto& value) { on(std::move(value)); }, message->second);
+        std::visit(
+            [&](auto& value) {
+              if constexpr (requires { on(message->first, value); })
+                on(message->first, value);
+              else
+                on(std::move(value));
+            },
+            message->second);
         heartbeat_.beat(post_);  // also when messages never end
       }
       finish_loading();
       send_done();
+      probe_links();
       heartbeat_.beat(post_);
     } catch (const std::exception& error) {
       post_.tell_failure(error);
@@ -60,6 +70,10 @@ void WorkerRole::on(BeginSession message) {
   session_ = message;
   pool_ =
       std::make_unique<ComputePool>(message.threads, message.interactive, [this] { post_.wake(); });
+  const Topology topology{static_cast<int>(session_.compositors), 1};
+  links_.clear();
+  for (int i = 0; i < topology.compositors; ++i)
+    links_.emplace_back(topology.compositor(i), message.compression, kCoreNeed);
 }
 
 void WorkerRole::on(const LoadVolume& message) {
@@ -142,13 +156,33 @@ void WorkerRole::send_done() {
     const int band =
         band_index(view_->grid, done.samples.tile, static_cast<int>(session_.compositors));
     const Topology topology{static_cast<int>(session_.compositors), 1};
-    post_.to_compositor(topology.compositor(band), std::move(done.samples));
+    Samples& samples = done.samples;
+    samples.tag = links_.at(static_cast<std::size_t>(band))
+                      .pack(codec_, samples.packed,
+                            samples_layout(samples.count, view_->update == Update::kAll));
+    post_.to_compositor(topology.compositor(band), std::move(samples));
     post_.to_master(done.report);
   }
 }
 
+void WorkerRole::probe_links() {
+  for (std::size_t i = 0; i < links_.size(); ++i) {
+    const Topology topology{static_cast<int>(session_.compositors), 1};
+    while (auto probe = links_[i].probe())
+      post_.to_compositor(topology.compositor(static_cast<int>(i)), std::move(*probe));
+  }
+}
+
+void WorkerRole::on(Rank from, const Receipt& message) {
+  const int index = Topology{static_cast<int>(session_.compositors), 1}.compositor_index(from);
+  require(index >= 0 && std::cmp_less(index, links_.size()), "was sent a receipt of nothing");
+  links_[static_cast<std::size_t>(index)].received(message);
+}
+
 void WorkerRole::on(const ReportCounters&) {
-  post_.to_master(Counters{post_.sent(), pool_ ? pool_->busy().count() : 0});
+  std::vector<LinkCount> links;
+  for (const BulkLink& link : links_) links.push_back(link.count());
+  post_.to_master(Counters{post_.sent(), std::move(links), pool_ ? pool_->busy().count() : 0});
 }
 
 void WorkerRole::on(const Stop& message) { stop_ = message; }

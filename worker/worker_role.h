@@ -9,6 +9,7 @@
 #include <memory>
 #include <optional>
 
+#include "common/codec/bulk_link.h"
 #include "common/transport/heartbeat.h"
 #include "common/transport/post.h"
 #include "worker/compute_pool.h"
@@ -36,9 +37,11 @@ class WorkerRole {
   void on(const RenderTile& message);
   void on(const ReportCounters& message);
   void on(const Stop& message);
+  void on(Rank from, const Receipt& message);
   /// Throws FatalError unless what the master sent makes sense.
   void require(bool good, const char* what) const;
   void send_done();
+  void probe_links();
   void finish_loading();
 
   struct LoadedBlock {
@@ -60,6 +63,8 @@ class WorkerRole {
   std::shared_ptr<const CommittedScene> scene_;
   std::optional<BeginView> view_;
   std::unique_ptr<ComputePool> pool_;
+  RowCodec codec_;
+  std::vector<BulkLink> links_;  ///< to each compositor
 };
 
 }  // namespace goldthread

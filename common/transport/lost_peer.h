@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 // What lets a rank outlive a peer that it writes to over TCP. Open MPI's TCP writes end the process
-// twice over: by SIGPIPE, and, that ignored, by trying again for ever after EPIPE. The reading side of
-// a lost connection copes. So a write that finds the peer gone says "not now" (EAGAIN), and Open MPI
-// leaves it to the reading side to notice.
+// twice over: by SIGPIPE, and, that ignored, by trying again for ever after EPIPE. The reading side
+// of a lost connection copes. So a write that finds the peer gone says "not now" (EAGAIN), and Open
+// MPI leaves it to the reading side to notice.
 
 namespace goldthread {
 

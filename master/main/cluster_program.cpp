@@ -42,7 +42,7 @@ struct RoleEnd {
 /// Whatever happens, the other ranks are told to stop.
 RoleEnd run_master(Transport& transport, Topology topology, const Options& options) {
   const bool serve = options.command == Command::kServe;
-  Cluster cluster(transport, topology, {options.threads.value_or(0), serve, interrupted});
+  Cluster cluster(transport, topology, {options.threads.value_or(0), serve, options.compression, interrupted});
   RoleEnd end;
   try {
     cluster.greet();

@@ -30,7 +30,7 @@ function startRender(options) {
   const name = `hosts-${++count}`;
   const [picture, report, status] = ['png', 'json', 'status'].map((extension) => inScratch(`${name}.${extension}`));
   const render = hosts.startRanks(kRanks, ['render', scene, '-o', picture, '--report', report, '--threads', '1', ...options],
-                                  status, { seconds: 80 });
+                                  status, { seconds: 150 });
   return Object.assign(render, {
     async finish() {
       const result = await render.ended;
@@ -43,7 +43,7 @@ function startRender(options) {
 /** What one process makes. */
 async function alone(options) {
   const output = inScratch(`alone-${++count}.png`);
-  const made = await run(['render', scene, '-o', output, ...options], { seconds: 80 });
+  const made = await run(['render', scene, '-o', output, ...options], { seconds: 150 });
   assert.equal(made.status, 0, made.stderr);
   const picture = readPng(output);
   assert.ok(covered(picture) > 0.05, 'the reference is empty');
@@ -88,8 +88,8 @@ for (const [way, lose] of [['is lost', (i) => hosts.kill(i)], ['falls silent', (
   test(`A host of workers that ${way} in the middle of a picture changes no bit of it`, async () => {
     // A fast machine may be done before there is any progress to tell, or nearly so: then more slowly.
     let render, options;
-    for (const step of ['0.01', '0.002', '0.0004', '0.0001']) {
-      options = ['--size', '256x192', '--error', '0.3', '--step', step];
+    for (const step of ['0.005', '0.001', '0.0002', '0.00005']) {
+      options = ['--size', '128x96', '--error', '0.3', '--step', step];
       render = startRender(options);
       if (await render.until(() => /rendering: [0-5]?\d %/.test(render.stderr)).then(() => true, () => false)) break;
     }

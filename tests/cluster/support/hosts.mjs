@@ -109,9 +109,8 @@ exit 0`);
   /** Limits what each host sends and gets, such as '1gbit'; without a rate, no longer. */
   shape(rate) {
     const change = (space, device) => {
-      const limit = rate ? ['replace', 'dev', device, 'root', 'tbf', 'rate', rate, 'burst', '256kb', 'latency', '20ms']
-                         : ['del', 'dev', device, 'root'];
-      execFileSync('tc', ['-n', space, 'qdisc', ...limit]);
+      const limit = rate ? ['tbf', 'rate', rate, 'burst', '256kb', 'latency', '20ms'] : ['noqueue'];
+      execFileSync('tc', ['-n', space, 'qdisc', 'replace', 'dev', device, 'root', ...limit]);
     };
     this.names.forEach((name, i) => {
       change(name, 'eth0');

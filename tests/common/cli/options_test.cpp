@@ -64,6 +64,7 @@ TEST(CommandLine, DefaultsAreThePromisedOnes) {
   EXPECT_EQ(render.compositors, 1);
   EXPECT_EQ(render.tile_px, 64);
   EXPECT_EQ(render.schedule, Schedule::kSquares);
+  EXPECT_EQ(render.compression, Compression::kAuto);
   EXPECT_EQ(render.sampling, Sampling::kAdaptive);
   EXPECT_EQ(render.error, 0.5);
   EXPECT_EQ(render.filter, Filter::kBilinear);
@@ -75,12 +76,13 @@ TEST(CommandLine, DefaultsAreThePromisedOnes) {
 
 TEST(CommandLine, EveryOptionOfRenderIsRead) {
   const Options o = options(
-      {"render",        "--size",      "800x600",  "--workers",  "3",          "--threads=4",
-       "--compositors", "2",           "--tile",   "32",         "--schedule", "rows",
-       "--sampling",    "every-pixel", "--error",  "1.5",        "--samples",  "16",
-       "--time",        "2.5",         "--step",   "0.25",       "--filter",   "bicubic",
-       "--orbit",       "12,90",       "--data",   "replicated", "--report",   "r.json",
-       "--log-level",   "debug",       "--output", "f%03d.exr",  "s.json"});
+      {"render",        "--size",  "800x600",     "--workers",   "3",          "--threads=4",
+       "--compositors", "2",       "--tile",      "32",          "--schedule", "rows",
+       "--compress",    "off",     "--sampling",  "every-pixel", "--error",    "1.5",
+       "--samples",     "16",      "--time",      "2.5",         "--step",     "0.25",
+       "--filter",      "bicubic", "--orbit",     "12,90",       "--data",     "replicated",
+       "--report",      "r.json",  "--log-level", "debug",       "--output",   "f%03d.exr",
+       "s.json"});
   EXPECT_EQ(o.input, "s.json");
   EXPECT_EQ(o.output, "f%03d.exr");
   EXPECT_EQ(o.size, (ImageSize{800, 600}));
@@ -89,6 +91,7 @@ TEST(CommandLine, EveryOptionOfRenderIsRead) {
   EXPECT_EQ(o.compositors, 2);
   EXPECT_EQ(o.tile_px, 32);
   EXPECT_EQ(o.schedule, Schedule::kRows);
+  EXPECT_EQ(o.compression, Compression::kOff);
   EXPECT_EQ(o.sampling, Sampling::kEveryPixel);
   EXPECT_EQ(o.error, 1.5);
   EXPECT_EQ(o.samples, 16);
