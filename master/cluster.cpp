@@ -74,8 +74,18 @@ void Cluster::on(Rank from, const Hello& message) {
   }
 }
 
+Compression Cluster::compression_to(const RankState& sender, Rank first, int count) const {
+  const auto near = [&](const RankState& peer) { return peer.node == sender.node; };
+  const bool all_near =
+      std::all_of(ranks_.begin() + first.value, ranks_.begin() + first.value + count, near);
+  // Within a node there is no wire; measuring it would measure how busy the cores are.
+  return options_.compression == Compression::kAuto && all_near ? Compression::kOff
+                                                                : options_.compression;
+}
+
 void Cluster::begin_session() {
   ranks_[0].host = host_name();
+  ranks_[0].node = node_key();
   liveness_.watch(topology_.size(), Clock::now());
   std::vector<int> capacity;
   for (int i = 0; i < topology_.size(); ++i) {
@@ -95,16 +105,18 @@ void Cluster::begin_session() {
       post_.to_compositor(
           rank,
           BeginSession{1, options_.interactive, static_cast<std::uint32_t>(topology_.compositors),
-                       options_.interactive ? Compression::kOff : options_.compression});
+                       options_.interactive ? Compression::kOff : compression_to(state, {0}, 1)});
     }
   }
   for (int w = 0; w < topology_.workers; ++w) {
     const Rank rank = topology_.worker(w);
     auto& places = capacity[static_cast<std::size_t>(w)];
     ranks_[static_cast<std::size_t>(rank.value)].threads = places;
-    post_.to_worker(rank, BeginSession{static_cast<std::uint32_t>(places), options_.interactive,
-                                       static_cast<std::uint32_t>(topology_.compositors),
-                                       options_.compression});
+    post_.to_worker(rank,
+                    BeginSession{static_cast<std::uint32_t>(places), options_.interactive,
+                                 static_cast<std::uint32_t>(topology_.compositors),
+                                 compression_to(ranks_[static_cast<std::size_t>(rank.value)],
+                                                topology_.compositor(0), topology_.compositors)});
     ++places;  // the spare tile
   }
   scheduler_ = Scheduler(capacity);

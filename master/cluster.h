@@ -166,6 +166,8 @@ class Cluster {
     events_.push_back(std::move(message));
   }
   void begin_session();
+  /// For a rank that sends bulk data to `count` ranks from `first` on.
+  Compression compression_to(const RankState& sender, Rank first, int count) const;
   void send_to_workers(const ToWorker& message);
   void check_interrupted() const;
   void check_liveness();

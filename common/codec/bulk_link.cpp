@@ -13,20 +13,19 @@ using Clock = std::chrono::steady_clock;
 
 /// Less is not worth a call of the codec.
 constexpr std::size_t kLeastBytes = 1024;
-/// The first messages, and one in so many of the others, are compressed and decompressed whether or
-/// not they go out so: else the estimates would be none, or old.
-constexpr std::uint64_t kFirstTrials = 8;
-constexpr std::uint64_t kBetweenTrials = 64;
-/// What the figure of a message of so many bytes or more weighs in a running estimate; of a smaller
-/// one less, in proportion.
-constexpr double kNewest = 0.2;
-constexpr double kFullWeightBytes = 64 * 1024;
+/// The first bytes, and a message after so many others, are compressed and decompressed whether
+/// they go out so or not: else the estimates would be none, or old.
+constexpr std::uint64_t kFirstTrials = 512 * 1024;
+constexpr std::uint64_t kBetweenTrials = 2 * 1024 * 1024;
+/// Raw bytes after which an estimate has half forgotten the ones before.
+constexpr double kMemoryBytes = 1024 * 1024;
 /// A train of probes of about 17 ms on 1 Gbit/s.
 constexpr std::size_t kProbeBytes = 256 * 1024;
 constexpr int kTrain = 8;
 constexpr int kTrains = 3;
-/// What takes 50 ms for a train, bytes/s: known well enough, and busy enough, after one.
-constexpr double kSlow = kTrain * kProbeBytes / 0.05;
+/// Where a train takes half a second, bytes/s, one is enough. Not where it takes less: a core that was
+/// busy elsewhere may be all there is to it.
+constexpr double kSlow = kTrain * kProbeBytes / 0.5;
 
 /// CPU time of this thread, s: the cores may be busy with something else.
 double cpu_seconds() {
@@ -35,23 +34,18 @@ double cpu_seconds() {
   return static_cast<double>(time.tv_sec) + 1e-9 * static_cast<double>(time.tv_nsec);
 }
 
-/// Of `bytes` since `begin`, a time of cpu_seconds().
-double speed(std::size_t bytes, double begin) {
-  return static_cast<double>(bytes) / std::max(1e-9, cpu_seconds() - begin);
-}
-
-void blend(double& estimate, double value, std::size_t bytes) {
-  const double weight = kNewest * std::min(1.0, static_cast<double>(bytes) / kFullWeightBytes);
-  estimate = estimate > 0 ? estimate + weight * (value - estimate) : value;
-}
-
 }  // namespace
+
+void RunningRatio::add(double amount, double bytes) {
+  const double keep = kMemoryBytes / (kMemoryBytes + bytes);
+  amount_ = keep * amount_ + amount;
+  bytes_ = keep * bytes_ + bytes;
+}
 
 BulkLink::BulkLink(Rank to, Compression mode, CoreNeed need)
     : to_(to),
       mode_(mode),
       choice_(need),
-      estimate_{.ratio = 0},
       pieces_left_(mode == Compression::kAuto ? kTrain * kTrains : 0) {}
 
 bool BulkLink::compresses() const {
@@ -63,11 +57,15 @@ BulkTag BulkLink::pack(RowCodec& codec, Buffer& payload, std::span<const RowLayo
   count_.messages += 1;
   count_.raw_bytes += payload.size();
   if (mode_ != Compression::kOff && payload.size() >= kLeastBytes) {
-    const bool trial = packed_ < kFirstTrials || packed_ % kBetweenTrials == 0;
-    ++packed_;
+    raw_since_trial_ += payload.size();
+    const bool trial = tried_ < kFirstTrials || raw_since_trial_ >= kBetweenTrials;
+    if (trial) {
+      raw_since_trial_ = 0;
+      tried_ += payload.size();
+    }
     auto packed = trial || compresses() ? compress(codec, payload, layouts, trial) : std::nullopt;
     if (mode_ == Compression::kAuto)
-      choice_.decide(meter_.bytes_per_second().value_or(0), estimate_);
+      choice_.decide(meter_.bytes_per_second().value_or(0), estimate());
     if (packed && compresses()) {
       payload = std::move(*packed);
       tag.coding = Coding::kRows;
@@ -81,18 +79,22 @@ BulkTag BulkLink::pack(RowCodec& codec, Buffer& payload, std::span<const RowLayo
 
 std::optional<Buffer> BulkLink::compress(RowCodec& codec, const Buffer& payload,
                                          std::span<const RowLayout> layouts, bool both_ways) {
-  const std::size_t raw = payload.size();
+  const auto raw = static_cast<double>(payload.size());
   const double begin = cpu_seconds();
   auto packed = codec.compress(payload.bytes(), layouts);
-  blend(estimate_.compress_bytes_per_s, speed(raw, begin), raw);
-  const double ratio = packed ? static_cast<double>(packed->size()) / static_cast<double>(raw) : 1;
-  blend(estimate_.ratio, ratio, raw);
+  const double middle = cpu_seconds();
+  compress_seconds_.add(middle - begin, raw);
+  ratio_.add(packed ? static_cast<double>(packed->size()) : raw, raw);
   if (packed && both_ways) {
-    const double middle = cpu_seconds();
     static_cast<void>(codec.decompress(packed->bytes(), layouts));
-    blend(estimate_.decompress_bytes_per_s, speed(raw, middle), raw);
+    decompress_seconds_.add(cpu_seconds() - middle, raw);
   }
   return packed;
+}
+
+CodecEstimate BulkLink::estimate() const {
+  const auto speed = [](double seconds) { return seconds > 0 ? 1 / seconds : 0; };
+  return {ratio_.value(), speed(compress_seconds_.value()), speed(decompress_seconds_.value())};
 }
 
 void BulkLink::received(const Receipt& receipt) {
@@ -114,9 +116,10 @@ LinkCount BulkLink::count() const {
   LinkCount count = count_;
   count.to = to_.value;
   count.bytes_per_second = meter_.bytes_per_second().value_or(0);
-  count.ratio = estimate_.ratio;
-  count.compress_per_s = estimate_.compress_bytes_per_s;
-  count.decompress_per_s = estimate_.decompress_bytes_per_s;
+  const CodecEstimate codec = estimate();
+  count.ratio = codec.ratio;
+  count.compress_per_s = codec.compress_bytes_per_s;
+  count.decompress_per_s = codec.decompress_bytes_per_s;
   return count;
 }
 

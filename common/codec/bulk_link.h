@@ -16,6 +16,17 @@
 
 namespace goldthread {
 
+/// What a raw byte brings on average, the last MiB or so of them counting most.
+class RunningRatio {
+ public:
+  void add(double amount, double bytes);
+  double value() const { return bytes_ > 0 ? amount_ / bytes_ : 0; }
+
+ private:
+  double amount_ = 0;
+  double bytes_ = 0;
+};
+
 class BulkLink {
  public:
   BulkLink(Rank to, Compression mode, CoreNeed need);
@@ -31,6 +42,7 @@ class BulkLink {
 
  private:
   bool compresses() const;
+  CodecEstimate estimate() const;
   /// Keeps the estimates; of decompression too if `both_ways`.
   std::optional<Buffer> compress(RowCodec& codec, const Buffer& payload,
                                  std::span<const RowLayout> layouts, bool both_ways);
@@ -39,9 +51,10 @@ class BulkLink {
   Compression mode_;
   LinkMeter meter_;
   CompressionChoice choice_;
-  CodecEstimate estimate_;
-  int pieces_left_;           ///< of probes
-  std::uint64_t packed_ = 0;  ///< messages that were long enough for the codec
+  RunningRatio ratio_, compress_seconds_, decompress_seconds_;  ///< of a raw byte
+  std::uint64_t raw_since_trial_ = 0;
+  std::uint64_t tried_ = 0;  ///< raw bytes, in trials
+  int pieces_left_;          ///< of probes
   LinkCount count_;
 };
 

@@ -128,7 +128,7 @@ TEST(BulkMessage, TravelsWithoutACopyAndAlignedTo16) {
       EXPECT_EQ(reinterpret_cast<std::uintptr_t>(received.data()) % 16, 0u);
     }
   });
-  EXPECT_EQ(bulk, 3) << "Samples, BandPicture and EncodedBand";
+  EXPECT_EQ(bulk, 5) << "Samples, BandPicture, EncodedBand, and LinkProbe to two roles";
 }
 
 TEST(BulkMessage, IsAlignedTo16AlsoInMemoryMadeForReceiving) {
