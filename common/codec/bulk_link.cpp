@@ -23,8 +23,8 @@ constexpr double kMemoryBytes = 1024 * 1024;
 constexpr std::size_t kProbeBytes = 256 * 1024;
 constexpr int kTrain = 8;
 constexpr int kTrains = 3;
-/// Where a train takes half a second, bytes/s, one is enough. Not where it takes less: a core that was
-/// busy elsewhere may be all there is to it.
+/// Where a train takes half a second, bytes/s, one is enough. Not where it takes less: a core that
+/// was busy elsewhere may be all there is to it.
 constexpr double kSlow = kTrain * kProbeBytes / 0.5;
 
 /// CPU time of this thread, s: the cores may be busy with something else.
