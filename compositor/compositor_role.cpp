@@ -16,6 +16,8 @@ namespace {
 
 constexpr std::chrono::milliseconds kIdleWait{50};
 constexpr std::chrono::seconds kFarewell{2};
+/// Neither this rank nor the master has much to do.
+constexpr CoreNeed kCoreNeed{.sender = 0.5, .receiver = 0.5};
 
 }  // namespace
 
@@ -29,11 +31,17 @@ bool CompositorRole::run() {
     try {
       while (auto message = post_.receive<ToCompositor>()) {
         const auto begin = std::chrono::steady_clock::now();
-        std::visit([&](auto& value) { on(std::move(value)); }, message->second);
+        std::visit(
+            [&](auto& value) {
+              post_.acknowledge(message->first, value);
+              on(std::move(value));
+            },
+            message->second);
         busy_.add(begin, std::chrono::steady_clock::now());
         heartbeat_.beat(post_);  // also when messages never end
       }
       forward_input();
+      probe_link();
       heartbeat_.beat(post_);
     } catch (const std::exception& error) {
       post_.tell_failure(error);
@@ -51,6 +59,16 @@ void CompositorRole::on(const BeginSession& message) {
                       "was given a session without compositors", "", ExitStatus::kClusterFailed});
   }
   compositors_ = static_cast<int>(message.compositors);
+  to_master_.emplace(Rank{0}, message.compression, kCoreNeed);
+}
+
+void CompositorRole::probe_link() {
+  if (!to_master_) return;
+  while (auto probe = to_master_->probe()) post_.to_master(std::move(*probe));
+}
+
+void CompositorRole::on(const Receipt& message) {
+  if (to_master_) to_master_->received(message);
 }
 
 void CompositorRole::on(const BeginView& message) {
@@ -65,8 +83,8 @@ void CompositorRole::on(const BeginView& message) {
   told_step_ = kNoStep;
   tell_step();  // of a band without tiles, which nothing else will
   if (early_.empty() || early_.front().epoch > view_->epoch) return;
-  for (const Samples& early : std::exchange(early_, {})) {
-    if (early.epoch == view_->epoch) place(early);
+  for (Samples& early : std::exchange(early_, {})) {
+    if (early.epoch == view_->epoch) place(std::move(early));
   }
 }
 
@@ -81,11 +99,14 @@ void CompositorRole::on(Samples message) {
     keep_early(std::move(message));
     return;
   }
-  if (message.epoch == view_->epoch) place(message);
+  if (message.epoch == view_->epoch) place(std::move(message));
 }
 
-void CompositorRole::place(const Samples& message) {
-  if (!canvas_->place(message)) {
+void CompositorRole::place(Samples message) {
+  const bool with_places = view_->update == Update::kAll;
+  if (!unpack_bulk(codec_, message.tag, samples_layout(message.count, with_places),
+                   message.packed) ||
+      !canvas_->place(message)) {
     throw FatalError({"rank " + std::to_string(post_.rank().value),
                       "was sent samples that do not fit tile " + std::to_string(message.tile.value),
                       "start the same build of goldthread on every host",
@@ -116,7 +137,11 @@ void CompositorRole::on(const Present& message) {
 
 void CompositorRole::on(const CollectBand& message) {
   if (!view_ || message.epoch != view_->epoch) return;
-  post_.to_master(BandPicture{message.epoch, canvas_->rect(), canvas_->pixels(message.filter)});
+  BandPicture band{message.epoch, canvas_->rect(), canvas_->pixels(message.filter)};
+  if (to_master_ && band.pixels.size() > 0)
+    band.tag = to_master_->pack(codec_, band.pixels,
+                                pixel_layout(std::int64_t{band.rect.width} * band.rect.height));
+  post_.to_master(std::move(band));
 }
 
 void CompositorRole::on(EncodedBand message) {
@@ -145,7 +170,9 @@ void CompositorRole::on(Reply message) {
 }
 
 void CompositorRole::on(const ReportCounters& message) {
-  post_.to_master(counters_of(post_, message, busy_, 1, BusyLog::Clock::now()));
+  Counters counters = counters_of(post_, message, busy_, 1, BusyLog::Clock::now());
+  if (to_master_) counters.links.push_back(to_master_->count());
+  post_.to_master(std::move(counters));
 }
 
 void CompositorRole::on(const Stop& message) { stop_ = message; }

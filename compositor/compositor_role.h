@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "common/base/busy_log.h"
+#include "common/codec/bulk_link.h"
 #include "common/transport/heartbeat.h"
 #include "common/transport/post.h"
 #include "compositor/canvas.h"
@@ -38,8 +39,11 @@ class CompositorRole {
   void on(Broadcast message);
   void on(Reply message);
   void on(const ReportCounters& message);
+  void on(const Receipt& message);
+  void on(const LinkProbe&) {}
   void on(const Stop& message);
-  void place(const Samples& message);
+  void place(Samples message);
+  void probe_link();
   /// To the master, if all tiles have taken another one.
   void tell_step();
   void keep_early(Samples message);
@@ -55,6 +59,8 @@ class CompositorRole {
   /// Samples that overtook the BeginView of their epoch, on their way from another rank. All of one
   /// epoch, the newest: it shows that the master has given up the views before.
   std::vector<Samples> early_;
+  RowCodec codec_;
+  std::optional<BulkLink> to_master_;
   PictureAssembly assembly_;
   BusyLog busy_;
   std::unique_ptr<Gateway> gateway_;

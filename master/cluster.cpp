@@ -81,8 +81,18 @@ void Cluster::on(Rank from, const Hello& message) {
   }
 }
 
+Compression Cluster::compression_to(const RankState& sender, Rank first, int count) const {
+  const auto near = [&](const RankState& peer) { return peer.node == sender.node; };
+  const bool all_near =
+      std::all_of(ranks_.begin() + first.value, ranks_.begin() + first.value + count, near);
+  // Within a node there is no wire; measuring it would measure how busy the cores are.
+  return options_.compression == Compression::kAuto && all_near ? Compression::kOff
+                                                                : options_.compression;
+}
+
 void Cluster::begin_session() {
   ranks_[0].host = host_name();
+  ranks_[0].node = node_key();
   liveness_.watch(topology_.size(), Clock::now());
   std::vector<int> capacity;
   for (int i = 0; i < topology_.size(); ++i) {
@@ -98,8 +108,11 @@ void Cluster::begin_session() {
                                              : std::max(1, cores / static_cast<int>(neighbours));
     }
     if (state.role == Role::kCompositor) {
-      post_.to_compositor(rank, BeginSession{1, options_.interactive,
-                                             static_cast<std::uint32_t>(topology_.compositors)});
+      // What it sends of a session is a page's, and compressed for that already.
+      post_.to_compositor(
+          rank, BeginSession{
+                    1, options_.interactive, static_cast<std::uint32_t>(topology_.compositors), 0,
+                    1, options_.interactive ? Compression::kOff : compression_to(state, {0}, 1)});
     }
   }
   if (options_.slabs) slabs_ = *options_.slabs > 0 ? *options_.slabs : topology_.workers;
@@ -114,14 +127,16 @@ void Cluster::begin_session() {
   for (int w = 0; w < topology_.workers; ++w) {
     const Rank rank = topology_.worker(w);
     auto& places = capacity[static_cast<std::size_t>(w)];
+    RankState& state = ranks_[static_cast<std::size_t>(rank.value)];
     const int threads = places;
-    ranks_[static_cast<std::size_t>(rank.value)].threads = threads;
+    state.threads = threads;
     // Of tiles whose rays go from slab to slab most wait.
     places = std::min(threads * (slabs_ + 1), std::max(threads, kMostWaitingTiles));
     post_.to_worker(
         rank, BeginSession{static_cast<std::uint32_t>(threads), options_.interactive,
                            static_cast<std::uint32_t>(topology_.compositors),
-                           static_cast<std::uint32_t>(slabs_), static_cast<std::uint32_t>(places)});
+                           static_cast<std::uint32_t>(slabs_), static_cast<std::uint32_t>(places),
+                           compression_to(state, topology_.compositor(0), topology_.compositors)});
     ++places;  // the spare tile
   }
   scheduler_ = Scheduler(capacity, options_.strategy);
@@ -399,7 +414,12 @@ void Cluster::lose(Rank rank) {
 }
 
 void Cluster::handle(Rank from, ToMaster message) {
-  std::visit([&](auto& value) { on(from, std::move(value)); }, message);
+  std::visit(
+      [&](auto& value) {
+        post_.acknowledge(from, value);
+        on(from, std::move(value));
+      },
+      message);
 }
 
 std::optional<ClusterEvent> Cluster::poll(std::chrono::microseconds at_most) {
@@ -431,6 +451,7 @@ void Cluster::on(Rank from, Counters message) {
   RankState& state = ranks_.at(static_cast<std::size_t>(from.value));
   state.counted = true;
   state.sent = std::move(message.sent);
+  state.links = std::move(message.links);
   state.busy_seconds = message.busy_seconds;
   state.peak_memory_bytes = message.peak_memory_bytes;
   if (!message.activity) return;

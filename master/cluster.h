@@ -39,6 +39,7 @@ struct ClusterOptions {
   int threads = 0;                ///< per worker; 0: the cores of its node / the workers on it
   bool interactive = false;       ///< compute threads give way to everything else
   std::optional<int> slabs = {};  ///< parts of the volume, 0: one for each worker; absent: not cut
+  Compression compression = Compression::kOff;
   /// Asked while waiting for other ranks; true ends the job with Interrupted.
   std::function<bool()> interrupted = [] { return false; };
   Strategy strategy = {.spare_us = kSpareUs};
@@ -57,6 +58,7 @@ struct RankState {
   bool counted = false;            ///< has answered the last request_counters()
   std::vector<MessageCount> sent;  ///< as of that answer
   RankActivity activity;           ///< of the last answer that told it
+  std::vector<LinkCount> links;    ///< as sent
 };
 
 /// What a picture was worth after a step: sums over its pixels, as TileQuality.
@@ -177,6 +179,7 @@ class Cluster {
   void handle(Rank from, ToMaster message);
   void on(Rank from, const Hello& message);
   void on(Rank, Heartbeat) {}
+  void on(Rank, LinkProbe) {}
   void on(Rank from, LoadProgress message);
   void on(Rank from, VolumeLoaded message);
   void on(Rank from, const VoxelCounts& message);
@@ -192,6 +195,8 @@ class Cluster {
     events_.push_back(std::move(message));
   }
   void begin_session();
+  /// For a rank that sends bulk data to `count` ranks from `first` on.
+  Compression compression_to(const RankState& sender, Rank first, int count) const;
   TileGrid cut(const ViewRequest& request, Step last) const;
   /// Waits until `done`, handling what comes meanwhile.
   void wait_until(const std::function<bool()>& done);

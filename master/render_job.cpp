@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstring>
 
+#include "common/codec/bulk_link.h"
 #include "common/tile/filter.h"
 
 namespace goldthread {
@@ -83,6 +84,7 @@ void collect(Cluster& cluster, const RenderRequest& request, RenderedFrame& fram
                                  CollectBand{cluster.view().epoch, request.filter});
   }
   const auto width = static_cast<std::size_t>(frame.size.width);
+  RowCodec codec;
   for (int open = topology.compositors; open > 0;) {
     check_interrupted(request);
     auto event = cluster.poll(kPollTime);
@@ -92,8 +94,11 @@ void collect(Cluster& cluster, const RenderRequest& request, RenderedFrame& fram
     const std::size_t first = 4 * width * static_cast<std::size_t>(band->rect.y);
     const std::size_t bytes =
         4 * sizeof(float) * width * static_cast<std::size_t>(band->rect.height);
-    if (band->rect.y < 0 || band->rect.height < 0 || band->pixels.size() != bytes ||
-        sizeof(float) * first + bytes > sizeof(float) * frame.rgba.size()) {
+    const bool fits =
+        band->rect.y >= 0 && band->rect.height >= 0 &&
+        sizeof(float) * first + bytes <= sizeof(float) * frame.rgba.size() &&
+        unpack_bulk(codec, band->tag, pixel_layout(bytes / (4 * sizeof(float))), band->pixels);
+    if (!fits || band->pixels.size() != bytes) {
       throw FatalError({"a compositor", "sent a band that does not fit the picture",
                         "start the same build of goldthread on every host",
                         ExitStatus::kClusterFailed});

@@ -76,6 +76,26 @@ Json sums_of(const std::vector<RankState>& ranks, std::uint64_t MessageCount::*w
   return sums;
 }
 
+/// What ranks know of their links and did about it; MB are 10⁶ bytes.
+Json links_of(const std::vector<RankState>& ranks) {
+  Json list = Json::array();
+  for (std::size_t i = 0; i < ranks.size(); ++i) {
+    for (const LinkCount& link : ranks[i].links) {
+      list.push_back({{"from", i},
+                      {"to", link.to},
+                      {"megabytesPerSecond", 1e-6 * link.bytes_per_second},
+                      {"ratio", link.ratio},
+                      {"compressMegabytesPerSecond", 1e-6 * link.compress_per_s},
+                      {"decompressMegabytesPerSecond", 1e-6 * link.decompress_per_s},
+                      {"messages", link.messages},
+                      {"compressed", link.coded},
+                      {"rawBytes", link.raw_bytes},
+                      {"sentBytes", link.sent_bytes}});
+    }
+  }
+  return list;
+}
+
 }  // namespace
 
 double estimated_error(const ViewState& view) {
@@ -102,6 +122,7 @@ std::string report_json(const Cluster& cluster, const std::vector<ViewState>& fr
                        {"tiles", frames.empty() ? Json::array() : tiles_of(frames.back())},
                        {"messages", sums_of(cluster.ranks(), &MessageCount::messages)},
                        {"bytes", sums_of(cluster.ranks(), &MessageCount::bytes)},
+                       {"links", links_of(cluster.ranks())},
                        {"bypassed", bypassed},
                        {"loadSeconds", load_seconds},
                        {"version", GOLDTHREAD_VERSION}};

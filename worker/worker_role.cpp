@@ -24,6 +24,8 @@ constexpr std::chrono::milliseconds kLoadingWait{20};
 constexpr std::size_t kMostQuanta = 16;
 /// That the master measures a camera's movement by.
 constexpr std::size_t kVisiblePoints = 64;
+/// Workers compute all the time, compositors mostly wait.
+constexpr CoreNeed kCoreNeed{.sender = 1, .receiver = 0.5};
 
 /// A slab holds so much of its neighbours as segments of a certain length need.
 void expect_short_steps(const CommittedScene& scene) {
@@ -54,8 +56,14 @@ bool WorkerRole::run() {
   while (!stop_) {
     try {
       while (auto message = post_.receive<ToWorker>()) {
-        sender_ = message->first;
-        std::visit([&](auto& value) { on(std::move(value)); }, message->second);
+        std::visit(
+            [&](auto& value) {
+              if constexpr (requires { on(message->first, std::move(value)); })
+                on(message->first, std::move(value));
+              else
+                on(std::move(value));
+            },
+            message->second);
         heartbeat_.beat(post_);  // also when messages never end
         if (quanta_.size() >= kMostQuanta) push_quanta();
       }
@@ -63,6 +71,7 @@ bool WorkerRole::run() {
       finish_loading();
       finish_counting();
       send_done();
+      probe_links();
       heartbeat_.beat(post_);
     } catch (const std::exception& error) {
       post_.tell_failure(error);
@@ -86,6 +95,10 @@ void WorkerRole::on(BeginSession message) {
     slabs_ = std::make_unique<SlabCrew>(topology, post_.rank(), message, wake);
   }
   pool_ = std::make_unique<ComputePool>(message.tiles, message.interactive, wake, cast_tile_);
+  const Topology topology{static_cast<int>(session_.compositors), 1};
+  links_.clear();
+  for (int i = 0; i < topology.compositors; ++i)
+    links_.emplace_back(topology.compositor(i), message.compression, kCoreNeed);
 }
 
 void WorkerRole::on(const LoadVolume& message) {
@@ -193,9 +206,9 @@ void WorkerRole::push_quanta() {
   quanta_.clear();
 }
 
-void WorkerRole::on(AdvanceRays message) {
+void WorkerRole::on(Rank from, AdvanceRays message) {
   require(slabs_ != nullptr, "was sent rays without slabs");
-  slabs_->take(std::move(message), sender_);
+  slabs_->take(std::move(message), from);
 }
 
 void WorkerRole::on(const RaysAdvanced& message) {
@@ -210,16 +223,36 @@ void WorkerRole::send_done() {
     const int band =
         band_index(view_->grid, done.samples.tile, static_cast<int>(session_.compositors));
     const Topology topology{static_cast<int>(session_.compositors), 1};
-    post_.to_compositor(topology.compositor(band), std::move(done.samples));
+    Samples& samples = done.samples;
+    samples.tag = links_.at(static_cast<std::size_t>(band))
+                      .pack(codec_, samples.packed,
+                            samples_layout(samples.count, view_->update == Update::kAll));
+    post_.to_compositor(topology.compositor(band), std::move(samples));
     post_.to_master(done.report);
   }
+}
+
+void WorkerRole::probe_links() {
+  for (std::size_t i = 0; i < links_.size(); ++i) {
+    const Topology topology{static_cast<int>(session_.compositors), 1};
+    while (auto probe = links_[i].probe())
+      post_.to_compositor(topology.compositor(static_cast<int>(i)), std::move(*probe));
+  }
+}
+
+void WorkerRole::on(Rank from, const Receipt& message) {
+  const int index = Topology{static_cast<int>(session_.compositors), 1}.compositor_index(from);
+  require(index >= 0 && std::cmp_less(index, links_.size()), "was sent a receipt of nothing");
+  links_[static_cast<std::size_t>(index)].received(message);
 }
 
 void WorkerRole::on(const ReportCounters& message) {
   const auto now = BusyLog::Clock::now();
   BusyLog log = pool_ ? pool_->busy_log(now) : BusyLog();
   if (slabs_) log.add(slabs_->busy_log());
-  post_.to_master(counters_of(post_, message, log, session_.threads, now));
+  Counters counters = counters_of(post_, message, log, session_.threads, now);
+  for (const BulkLink& link : links_) counters.links.push_back(link.count());
+  post_.to_master(std::move(counters));
 }
 
 void WorkerRole::on(const Stop& message) {

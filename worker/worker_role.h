@@ -10,6 +10,7 @@
 #include <optional>
 #include <vector>
 
+#include "common/codec/bulk_link.h"
 #include "common/transport/heartbeat.h"
 #include "common/transport/post.h"
 #include "worker/compute_pool.h"
@@ -41,14 +42,16 @@ class WorkerRole {
   void on(const CommitScene& message);
   void on(const BeginView& message);
   void on(const RenderTiles& message);
-  void on(AdvanceRays message);
+  void on(Rank from, AdvanceRays message);
   void on(const RaysAdvanced& message);
   void on(const ReportCounters& message);
   void on(const Stop& message);
+  void on(Rank from, const Receipt& message);
   /// Throws FatalError unless what the master sent makes sense.
   void require(bool good, const char* what) const;
   void push_quanta();
   void send_done();
+  void probe_links();
   void finish_loading();
   void finish_counting();
   /// What casts the rays of a view: this worker, or all that hold a slab.
@@ -59,7 +62,6 @@ class WorkerRole {
   TileCaster cast_tile_;
   HeartbeatSender heartbeat_;
   std::optional<Stop> stop_;
-  Rank sender_;  ///< of the message at hand
   BeginSession session_;
   std::atomic<float> load_fraction_{0};
   float told_fraction_ = 0;
@@ -72,6 +74,8 @@ class WorkerRole {
   std::unique_ptr<SlabCrew> slabs_;  ///< where the volume lies in slabs
   std::vector<RenderTile> quanta_;   ///< of the view, that the threads do not know of yet
   std::unique_ptr<ComputePool> pool_;
+  RowCodec codec_;
+  std::vector<BulkLink> links_;  ///< to each compositor
 };
 
 }  // namespace goldthread

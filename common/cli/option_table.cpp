@@ -228,6 +228,12 @@ Outcome apply_log_level(Options& options, const std::string& text) {
                                options.log_level);
 }
 
+Outcome apply_compress(Options& options, const std::string& text) {
+  return read_choice<Compression>(
+      text, {{"auto", Compression::kAuto}, {"on", Compression::kOn}, {"off", Compression::kOff}},
+      options.compression);
+}
+
 Outcome apply_schedule(Options& options, const std::string& text) {
   return read_choice<Schedule>(text, {{"squares", Schedule::kSquares}, {"rows", Schedule::kRows}},
                                options.schedule);
@@ -320,6 +326,10 @@ constexpr OptionRow kTable[] = {
      "Where the volume lives: replicated, whole on each node; or slabs:N, cut into N parts that "
      "groups of workers share, slabs into one for each worker [replicated]",
      kBoth, apply_data},
+    {"compress", "--compress", "WHEN", kCluster,
+     "Samples and pictures between ranks are compressed, without loss: auto, where the measured "
+     "link makes it pay; on; or off [auto]",
+     kBoth, apply_compress},
     {"bypass", "--bypass", "LIST", kCluster,
      "Roles whose computing is replaced by stubs that keep every message: any of master, worker, "
      "compositor, with commas between them [none]",

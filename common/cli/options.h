@@ -12,6 +12,7 @@
 
 #include "common/base/result.h"
 #include "common/base/types.h"
+#include "common/protocol/compression.h"
 #include "common/tile/refinement.h"
 
 namespace goldthread {
@@ -64,6 +65,7 @@ struct Options {
   std::optional<int> tile_px;  ///< edge of all tiles; absent: as the master chooses
   Bypass bypass;
   std::optional<int> slabs;  ///< parts of the volume; absent: each node holds all of it
+  Compression compression = Compression::kAuto;
   Schedule schedule = Schedule::kSquares;
   Sampling sampling = Sampling::kAdaptive;
   double error = 0.5;          ///< estimated RMS error in 1/255

@@ -17,6 +17,7 @@
 #include "common/base/types.h"
 #include "common/protocol/buffer.h"
 #include "common/protocol/codec.h"
+#include "common/protocol/compression.h"
 #include "common/scene/scene.h"
 #include "common/tile/refinement.h"
 #include "common/tile/tile_grid.h"
@@ -63,10 +64,42 @@ struct Enumerators<ExitStatus> {
                                      ExitStatus::kClusterFailed};
 };
 
+/// How the payload of a bulk message was made shorter.
+enum class Coding : std::uint8_t { kRaw, kRows };
+template <>
+struct Enumerators<Coding> {
+  static constexpr std::array values{Coding::kRaw, Coding::kRows};
+};
+template <>
+struct Enumerators<Compression> {
+  static constexpr std::array values{Compression::kAuto, Compression::kOn, Compression::kOff};
+};
+
 /// Declares a message's name and fields; both are part of the wire format's documentation.
 #define GOLDTHREAD_MESSAGE(Type, ...)         \
   static constexpr const char* kName = #Type; \
   static constexpr auto fields() { return std::tuple{__VA_ARGS__}; }
+
+// ---- between any two ranks
+// -----------------------------------------------------------------------
+
+/// Of each message with a payload that may be coded.
+struct BulkTag {
+  Coding coding = Coding::kRaw;
+  std::uint32_t receipt = 0;  ///< not 0: answered at once by a Receipt of it
+  static constexpr auto fields() { return std::tuple{&BulkTag::coding, &BulkTag::receipt}; }
+};
+/// A message with that tag is here, and so are all that were sent before it.
+struct Receipt {
+  std::uint32_t serial = 0;
+  GOLDTHREAD_MESSAGE(Receipt, &Receipt::serial)
+};
+/// Bytes without a meaning, sent to see how long they take.
+struct LinkProbe {
+  BulkTag tag;
+  Buffer payload;
+  GOLDTHREAD_MESSAGE(LinkProbe, &LinkProbe::tag, &LinkProbe::payload)
+};
 
 // ---- any rank to the master
 // -----------------------------------------------------------------------
@@ -168,7 +201,9 @@ struct BandPicture {
   Epoch epoch;
   PixelRect rect;
   Buffer pixels;
-  GOLDTHREAD_MESSAGE(BandPicture, &BandPicture::epoch, &BandPicture::rect, &BandPicture::pixels)
+  BulkTag tag{};
+  GOLDTHREAD_MESSAGE(BandPicture, &BandPicture::epoch, &BandPicture::rect, &BandPicture::tag,
+                     &BandPicture::pixels)
 };
 /// What a rank has sent since the start, by kind of message, and how long it computed.
 struct MessageCount {
@@ -190,12 +225,37 @@ struct Activity {
     return std::tuple{&Activity::asked_us, &Activity::now_us, &Activity::age_us, &Activity::share};
   }
 };
+/// What a rank knows of its link to another, and what it did about it. Figures are 0 where nothing
+/// was measured.
+struct LinkCount {
+  std::int32_t to = 0;
+  double bytes_per_second = 0;   ///< that the link carries
+  double ratio = 0;              ///< bytes of the codec / raw bytes
+  double compress_per_s = 0;     ///< raw bytes of a core
+  double decompress_per_s = 0;   ///< raw bytes of a core
+  std::uint64_t messages = 0;    ///< with payloads that may be coded
+  std::uint64_t coded = 0;       ///< of them were
+  std::uint64_t raw_bytes = 0;   ///< of their payloads
+  std::uint64_t sent_bytes = 0;  ///< of their payloads, as sent
+  static constexpr auto fields() {
+    return std::tuple{&LinkCount::to,
+                      &LinkCount::bytes_per_second,
+                      &LinkCount::ratio,
+                      &LinkCount::compress_per_s,
+                      &LinkCount::decompress_per_s,
+                      &LinkCount::messages,
+                      &LinkCount::coded,
+                      &LinkCount::raw_bytes,
+                      &LinkCount::sent_bytes};
+  }
+};
 struct Counters {
   std::vector<MessageCount> sent;
+  std::vector<LinkCount> links;
   double busy_seconds = 0;
   std::uint64_t peak_memory_bytes = 0;  ///< of its process
   std::optional<Activity> activity;     ///< if it was asked for
-  GOLDTHREAD_MESSAGE(Counters, &Counters::sent, &Counters::busy_seconds,
+  GOLDTHREAD_MESSAGE(Counters, &Counters::sent, &Counters::links, &Counters::busy_seconds,
                      &Counters::peak_memory_bytes, &Counters::activity)
 };
 /// A rank cannot go on: the job ends with this line and status.
@@ -246,10 +306,10 @@ struct Audience {
                      &Audience::tiles)
 };
 
-using ToMaster =
-    std::variant<Hello, Heartbeat, LoadProgress, VolumeLoaded, VoxelCounts, VolumeMapped,
-                 SceneCommitted, ViewTaken, TileDone, BandReady, BandPicture, Counters, RankFailed,
-                 GatewayOpened, ViewerCamera, ViewerEdit, ViewerSize, ViewerDisplay, Audience>;
+using ToMaster = std::variant<Hello, Heartbeat, LoadProgress, VolumeLoaded, VoxelCounts,
+                              VolumeMapped, SceneCommitted, ViewTaken, TileDone, BandReady,
+                              BandPicture, Counters, RankFailed, GatewayOpened, LinkProbe,
+                              ViewerCamera, ViewerEdit, ViewerSize, ViewerDisplay, Audience>;
 
 // ---- the master to a worker, or to a compositor
 // ---------------------------------------------------
@@ -261,8 +321,10 @@ struct BeginSession {
   std::uint32_t compositors = 1;
   std::uint32_t slabs = 0;  ///< parts of the volume; 0: each node has all of it
   std::uint32_t tiles = 1;  ///< that a worker casts at a time; with slabs most wait for others
+  Compression compression = Compression::kOff;  ///< of what this rank sends
   GOLDTHREAD_MESSAGE(BeginSession, &BeginSession::threads, &BeginSession::interactive,
-                     &BeginSession::compositors, &BeginSession::slabs, &BeginSession::tiles)
+                     &BeginSession::compositors, &BeginSession::slabs, &BeginSession::tiles,
+                     &BeginSession::compression)
 };
 /// Read the volume for all ranks of this node; or a slab, for those that have the same one.
 struct LoadVolume {
@@ -370,7 +432,7 @@ struct RaysAdvanced {
 
 using ToWorker = std::variant<BeginSession, LoadVolume, MapVolume, CountVoxels, DescribeVolume,
                               WorkerGone, CommitScene, BeginView, RenderTiles, AdvanceRays,
-                              RaysAdvanced, ReportCounters, Stop>;
+                              RaysAdvanced, ReportCounters, Receipt, Stop>;
 
 // ---- to a compositor
 // ------------------------------------------------------------------------------
@@ -385,8 +447,9 @@ struct Samples {
   Step to;
   std::uint32_t count = 0;
   Buffer packed;
+  BulkTag tag{};
   GOLDTHREAD_MESSAGE(Samples, &Samples::epoch, &Samples::tile, &Samples::from, &Samples::to,
-                     &Samples::count, &Samples::packed)
+                     &Samples::count, &Samples::tag, &Samples::packed)
 };
 /// How far the picture has moved since an older view, by the newest camera.
 struct ViewMovement {
@@ -453,7 +516,7 @@ struct Reply {
 
 using ToCompositor =
     std::variant<BeginSession, BeginView, Samples, Present, CollectBand, EncodedBand, OpenGateway,
-                 Welcome, Broadcast, Reply, ReportCounters, Stop>;
+                 Welcome, Broadcast, Reply, ReportCounters, Receipt, LinkProbe, Stop>;
 
 #undef GOLDTHREAD_MESSAGE
 

@@ -16,7 +16,7 @@ inline std::uint64_t microseconds_of(BusyLog::Clock::time_point time) {
 /// What the rank of `post` has sent, and what `log` says of its `threads` threads up to `now`.
 inline Counters counters_of(const Post& post, const ReportCounters& request, BusyLog log,
                             unsigned threads, BusyLog::Clock::time_point now) {
-  Counters counters{post.sent(), log.total().count(), peak_memory_bytes(), {}};
+  Counters counters{post.sent(), {}, log.total().count(), peak_memory_bytes(), {}};
   if (request.activity) {
     counters.activity =
         Activity{request.asked_us, microseconds_of(now),

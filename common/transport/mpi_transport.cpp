@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "common/base/result.h"
+#include "common/transport/lost_peer.h"
 #include "common/transport/mpi_check.h"
 
 namespace goldthread {
@@ -35,6 +36,7 @@ constexpr unsigned long kTimerSlackNs = 1000;
 class MpiTransport::Impl {
  public:
   Impl() {
+    outlive_lost_peers();
     int provided = 0;
     check_mpi(MPI_Init_thread(nullptr, nullptr, MPI_THREAD_FUNNELED, &provided), "MPI_Init_thread");
     MPI_Comm_set_errhandler(MPI_COMM_WORLD, MPI_ERRORS_RETURN);

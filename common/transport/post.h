@@ -48,6 +48,18 @@ class Post {
     }
     return std::pair{envelope->from, std::move(*message)};
   }
+  /// Answers a message whose tag asks for a receipt; to be called before the message is used.
+  template <class Message>
+  void acknowledge(Rank from, const Message& message) {
+    if constexpr (requires { message.tag.receipt; }) {
+      if (message.tag.receipt == 0) return;
+      // Workers send to compositors, compositors to the master.
+      if (rank() == Rank{0})
+        to_compositor(from, Receipt{message.tag.receipt});
+      else
+        to_worker(from, Receipt{message.tag.receipt});
+    }
+  }
   void wait(std::chrono::microseconds at_most) { transport_.wait(at_most); }
   void wake() { transport_.wake(); }
   void flush(std::chrono::milliseconds at_most) { transport_.flush(at_most); }

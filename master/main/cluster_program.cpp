@@ -46,8 +46,8 @@ RoleEnd run_master(Transport& transport, Topology topology, const Options& optio
   const bool serve = options.command == Command::kServe;
   warn_of_bypass(options.bypass);
   Cluster cluster(transport, topology,
-                  {options.threads.value_or(0), serve, options.slabs, interrupted,
-                   strategy_of(options.bypass)});
+                  {options.threads.value_or(0), serve, options.slabs, options.compression,
+                   interrupted, strategy_of(options.bypass)});
   RoleEnd end;
   try {
     cluster.greet();

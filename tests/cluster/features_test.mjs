@@ -66,6 +66,9 @@ test('A report says what was done, and its numbers agree with each other', async
   assert.ok(report.kernel.length > 0 && Array.isArray(report.features));
 
   assert.deepEqual(report.ranks.map(({ rank }) => rank), [0, 1, 2, 3, 4]);
+  // Within a machine nothing is compressed.
+  assert.equal(report.links.length, 2 + 2 * 2);
+  for (const { compressed, rawBytes, sentBytes } of report.links) assert.deepEqual([compressed, rawBytes], [0, sentBytes]);
   assert.deepEqual(report.ranks.map(({ role }) => role), ['master', 'compositor', 'compositor', 'worker', 'worker']);
   for (const { host, busySeconds } of report.ranks) assert.ok(host.length > 0 && busySeconds >= 0);
 });

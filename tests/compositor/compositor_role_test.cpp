@@ -10,6 +10,7 @@
 
 #include <cstring>
 
+#include "common/codec/bulk_link.h"
 #include "common/transport/counters.h"
 #include "common/transport/loopback.h"
 #include "tests/compositor/packed_samples.h"
@@ -22,8 +23,8 @@ constexpr Rank kCompositor{1};
 
 class CompositorRoleTest : public ::testing::Test {
  protected:
-  void begin_session(std::uint32_t compositors = 1) {
-    master_.to_compositor(role_, BeginSession{1, false, compositors});
+  void begin_session(std::uint32_t compositors = 1, Compression compression = Compression::kOff) {
+    master_.to_compositor(role_, BeginSession{1, false, compositors, 0, 1, compression});
   }
   void begin_view(std::uint32_t epoch, const TileGrid& grid = kGrid) {
     BeginView view;
@@ -270,6 +271,82 @@ TEST_F(CompositorRoleTest, TellsWhenItComputedIfItIsAsked) {
   EXPECT_EQ(activity->share.size(), std::size_t(BusyLog::kBins));
   EXPECT_LT(activity->age_us, 50'000u);
   EXPECT_LE(activity->now_us, microseconds_of(BusyLog::Clock::now()));
+}
+
+TEST_F(CompositorRoleTest, SamplesThatCameCompressedAreThoseThatCameRaw) {
+  RowCodec codec;
+  BulkLink link(kCompositor, Compression::kOn, {});
+  begin_session();
+  begin_view(1);
+  // One overtakes its view: it is kept as it came.
+  for (const std::uint32_t epoch : {2u, 1u}) {
+    Samples message = packed_grid(grid_, {0}, kNoStep, {4}, [&](float x, float) {
+      return Sample{x, 0, 0, float(epoch)};
+    });
+    message.tag = link.pack(codec, message.packed, samples_layout(message.count, true));
+    ASSERT_EQ(message.tag.coding, Coding::kRows);
+    send(epoch, std::move(message));
+  }
+  begin_view(2);
+  collect(2);
+  run();
+  EXPECT_TRUE(received<RankFailed>().empty());
+  const auto bands = received<BandPicture>();
+  ASSERT_EQ(bands.size(), 1u);
+  EXPECT_EQ(red_of(*bands[0], 2), 2.5f);
+}
+
+TEST_F(CompositorRoleTest, CompressedSamplesThatAreNoneEndTheJob) {
+  begin_session();
+  begin_view(1);
+  Samples message = packed_grid(grid_, {0}, kNoStep, {4}, [&](float, float) {
+    return Sample{0, 0, 0, 1};
+  });
+  message.tag.coding = Coding::kRows;
+  send(1, std::move(message));
+  run();
+  ASSERT_EQ(received<RankFailed>().size(), 1u);
+  EXPECT_NE(received<RankFailed>()[0]->failure.what.find("do not fit tile 0"), std::string::npos);
+}
+
+TEST_F(CompositorRoleTest, AnswersWhatAsksForAReceipt) {
+  worker_.to_compositor(role_, LinkProbe{{Coding::kRaw, 7}, Buffer(1000)});
+  worker_.to_compositor(role_, LinkProbe{{Coding::kRaw, 0}, Buffer(1000)});
+  begin_session();
+  begin_view(1);
+  Samples message = packed_grid(grid_, {0}, kNoStep, {1}, [&](float, float) {
+    return Sample{0, 0, 0, 1};
+  });
+  message.tag.receipt = 8;
+  send(1, std::move(message));
+  run();
+  std::vector<std::uint32_t> serials;
+  while (auto answer = worker_.receive<ToWorker>())
+    serials.push_back(std::get<Receipt>(answer->second).serial);
+  EXPECT_EQ(serials, (std::vector<std::uint32_t>{7, 8}));
+}
+
+TEST_F(CompositorRoleTest, ABandThatIsCompressedIsTheOneThatIsNot) {
+  std::vector<Buffer> pixels;
+  for (const Compression compression : {Compression::kOff, Compression::kOn}) {
+    received_.clear();
+    begin_session(1, compression);
+    begin_view(1);
+    send(1, packed_grid(grid_, {0}, kNoStep, {5}, [&](float x, float y) {
+           return Sample{0.01f * x, 0.01f * y, 0, 1};
+         }));
+    collect(1);
+    run();
+    const auto bands = received<BandPicture>();
+    ASSERT_EQ(bands.size(), 1u);
+    EXPECT_EQ(bands[0]->tag.coding, compression == Compression::kOn ? Coding::kRows : Coding::kRaw);
+    Buffer& band = pixels.emplace_back(bands[0]->pixels.size());
+    std::memcpy(band.data(), bands[0]->pixels.data(), band.size());
+    RowCodec codec;
+    ASSERT_TRUE(unpack_bulk(codec, bands[0]->tag, pixel_layout(64 * 64), band));
+  }
+  ASSERT_EQ(pixels[0].size(), pixels[1].size());
+  EXPECT_EQ(std::memcmp(pixels[0].data(), pixels[1].data(), pixels[0].size()), 0);
 }
 
 /// The second of three compositors: what it encodes goes to the first, whom the test plays.

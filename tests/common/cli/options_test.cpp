@@ -64,6 +64,7 @@ TEST(CommandLine, DefaultsAreThePromisedOnes) {
                render.report || render.cost_image);
   EXPECT_EQ(render.compositors, 1);
   EXPECT_EQ(render.schedule, Schedule::kSquares);
+  EXPECT_EQ(render.compression, Compression::kAuto);
   EXPECT_EQ(render.sampling, Sampling::kAdaptive);
   EXPECT_EQ(render.error, 0.5);
   EXPECT_EQ(render.filter, Filter::kBilinear);
@@ -81,7 +82,7 @@ TEST(CommandLine, EveryOptionOfRenderIsRead) {
        "--time",        "2.5",         "--step",      "0.25",       "--filter",   "bicubic",
        "--orbit",       "12,90",       "--data",      "replicated", "--report",   "r.json",
        "--cost-image",  "c%d.png",     "--log-level", "debug",      "--output",   "f%03d.exr",
-       "s.json"});
+       "--compress",    "off",         "s.json"});
   EXPECT_EQ(o.input, "s.json");
   EXPECT_EQ(o.output, "f%03d.exr");
   EXPECT_EQ(o.size, (ImageSize{800, 600}));
@@ -90,6 +91,7 @@ TEST(CommandLine, EveryOptionOfRenderIsRead) {
   EXPECT_EQ(o.compositors, 2);
   EXPECT_EQ(o.tile_px, 32);
   EXPECT_EQ(o.schedule, Schedule::kRows);
+  EXPECT_EQ(o.compression, Compression::kOff);
   EXPECT_EQ(o.sampling, Sampling::kEveryPixel);
   EXPECT_EQ(o.error, 1.5);
   EXPECT_EQ(o.samples, 16);

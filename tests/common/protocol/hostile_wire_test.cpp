@@ -73,7 +73,8 @@ TEST(HostileMessage, OfAnUnknownKindIsRefused) {
 
 TEST(HostileMessage, WithPaddingThatIsNotZeroIsRefused) {
   Buffer bytes = encode(ToCompositor(filled<Samples>()));
-  const std::size_t padding = 1 + 4 + 4 + 2 + 2 + 4;  // kind, epoch, tile, from, to, count
+  // Kind, epoch, tile, from, to, count, tag.
+  const std::size_t padding = 1 + 4 + 4 + 2 + 2 + 4 + (1 + 4);
   ASSERT_EQ(bytes.data()[padding], std::byte{0});
   bytes.data()[padding] = std::byte{1};
   EXPECT_FALSE(decode<ToCompositor>(std::move(bytes)));
@@ -104,6 +105,8 @@ TEST(HostileMessage, WithAnUnknownEnumeratorIsRefused) {
   expect_only_enumerators_read<Sampling>();
   expect_only_enumerators_read<Filter>();
   expect_only_enumerators_read<Update>();
+  expect_only_enumerators_read<Coding>();
+  expect_only_enumerators_read<Compression>();
 }
 
 TEST(HostileMessage, CannotReportAFailureAsDone) {

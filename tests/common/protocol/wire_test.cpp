@@ -128,7 +128,9 @@ TEST(BulkMessage, TravelsWithoutACopyAndAlignedTo16) {
       EXPECT_EQ(reinterpret_cast<std::uintptr_t>(received.data()) % 16, 0u);
     }
   });
-  EXPECT_EQ(bulk, 5) << "Samples, BandPicture, EncodedBand, AdvanceRays and RaysAdvanced";
+  EXPECT_EQ(bulk, 7)
+      << "Samples, BandPicture, EncodedBand, AdvanceRays, RaysAdvanced, and LinkProbe "
+         "to two roles";
 }
 
 TEST(BulkMessage, IsAlignedTo16AlsoInMemoryMadeForReceiving) {

@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "common/transport/lost_peer.h"
+
+#include <sys/socket.h>
+#include <sys/syscall.h>
+#include <sys/uio.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <csignal>
+
+namespace {
+
+bool is_socket(int descriptor) {
+  int type = 0;
+  socklen_t size = sizeof type;
+  return getsockopt(descriptor, SOL_SOCKET, SO_TYPE, &type, &size) == 0;
+}
+
+}  // namespace
+
+/// In place of the C library's, for all libraries of this process.
+extern "C" ssize_t writev(int descriptor, const iovec* parts, int count) {
+  const ssize_t written = syscall(SYS_writev, descriptor, parts, count);
+  if (written >= 0) return written;
+  const int error = errno;
+  const bool lost = error == EPIPE || error == ECONNRESET;
+  errno = lost && is_socket(descriptor) ? EAGAIN : error;
+  return written;
+}
+
+namespace goldthread {
+
+void outlive_lost_peers() { std::signal(SIGPIPE, SIG_IGN); }
+
+}  // namespace goldthread

@@ -1,0 +1,103 @@
+// SPDX-License-Identifier: Apache-2.0
+// The program over three hosts: namespaces of this machine, with a network between them. Ends with 77, and
+// says why, where there can be none.
+
+import assert from 'node:assert/strict';
+import { readFileSync } from 'node:fs';
+import test, { after } from 'node:test';
+import { Hosts, whyNoHosts } from './support/hosts.mjs';
+import { errorLines, inScratch, leftOver, run } from './support/program.mjs';
+import { lit, sceneOf, surfaces, writeJson, writeNrrd } from './support/data.mjs';
+import { covered, readPng } from './support/picture.mjs';
+
+const absent = whyNoHosts();
+if (absent) {
+  console.log(`skipped: ${absent}`);
+  process.exit(77);
+}
+
+// The master, the compositor and a worker on the first host, two workers on each of the others.
+const hosts = new Hosts([3, 2, 2]);
+const kRanks = 7;
+after(() => hosts.close());
+
+const volume = writeNrrd('bumps.nrrd');
+const scene = writeJson('scene.json', sceneOf(volume, { shading: lit, isosurfaces: surfaces }));
+
+let count = 0;
+/** Starts a render over all hosts; `finish` waits for its picture. */
+function startRender(options) {
+  const name = `hosts-${++count}`;
+  const [picture, report, status] = ['png', 'json', 'status'].map((extension) => inScratch(`${name}.${extension}`));
+  const render = hosts.startRanks(kRanks, ['render', scene, '-o', picture, '--report', report, '--threads', '1', ...options],
+                                  status, { seconds: 150 });
+  return Object.assign(render, {
+    async finish() {
+      const result = await render.ended;
+      assert.equal(readFileSync(status, 'utf8').trim(), '0', result.stderr);
+      return { ...result, picture: readPng(picture), report: JSON.parse(readFileSync(report, 'utf8')) };
+    },
+  });
+}
+
+/** What one process makes. */
+async function alone(options) {
+  const output = inScratch(`alone-${++count}.png`);
+  const made = await run(['render', scene, '-o', output, ...options], { seconds: 150 });
+  assert.equal(made.status, 0, made.stderr);
+  const picture = readPng(output);
+  assert.ok(covered(picture) > 0.05, 'the reference is empty');
+  return picture;
+}
+
+test('A picture of three hosts is that of one process, to the bit', async () => {
+  const options = ['--size', '301x197'];
+  const { picture, report, stderr } = await startRender(options).finish();
+  assert.ok(picture.rgb.equals((await alone(options)).rgb));
+  assert.deepEqual(report.ranks.map(({ host }) => hosts.names.indexOf(host)), [0, 0, 0, 1, 1, 2, 2], stderr);
+  const cast = new Set(report.tiles.map(({ worker }) => report.ranks[worker].host));
+  assert.deepEqual([...cast].sort(), hosts.names, 'each host has cast a part of it');
+});
+
+/** The blocks of memory that a process has mapped a volume from, by device and number of the file. */
+const volumeBlocks = (pid) =>
+  [...new Set(readFileSync(`/proc/${pid}/maps`, 'utf8').split('\n').filter((line) => line.includes('memfd:goldthread volume'))
+    .map((line) => line.split(/\s+/).slice(3, 5).join(' ')))];
+
+test('A session over three hosts answers pages, and each host holds the volume once', async () => {
+  const session = hosts.startRanks(kRanks, ['serve', scene, '--port', '0', '--size', '64x64'], inScratch('served'));
+  await session.until(() => /http:\S+\n/.test(session.stdout) && session.stderr.includes('values 0'));
+  const url = session.stdout.match(/http:\S+/)[0];
+  const ask = `fetch(${JSON.stringify(url)}).then(async (answer) => console.log(answer.status, await answer.text()))`;
+  const page = await hosts.start(0, process.execPath, ['-e', ask], { seconds: 20 }).ended;
+  assert.match(page.stdout, /^200 <!doctype html>/i, page.stderr);
+
+  // A file that is mapped is the same for all ranks of a host, and another on each.
+  const seen = hosts.names.map((_, i) => hosts.ranks(i).flatMap(volumeBlocks));
+  assert.deepEqual(seen.map((blocks) => blocks.length), [1, 2, 2], 'workers of each host that have mapped it');
+  assert.deepEqual(seen.map((blocks) => new Set(blocks).size), [1, 1, 1]);
+  assert.equal(new Set(seen.flat()).size, 3);
+
+  session.signal('SIGTERM');
+  const result = await session.ended;
+  assert.deepEqual(errorLines(result), []);
+  assert.deepEqual(await leftOver(), []);
+});
+
+for (const [way, lose] of [['is lost', (i) => hosts.kill(i)], ['falls silent', (i) => hosts.cut(i)]]) {
+  test(`A host of workers that ${way} in the middle of a picture changes no bit of it`, async () => {
+    // A fast machine may be done before there is any progress to tell, or nearly so: then more slowly.
+    let render, options;
+    for (const step of ['0.02', '0.005', '0.001', '0.0002', '0.00005']) {
+      options = ['--size', '128x96', '--error', '0.3', '--step', step];
+      render = startRender(options);
+      if (await render.until(() => /rendering: [0-5]?\d %/.test(render.stderr)).then(() => true, () => false)) break;
+    }
+    lose(2);
+    const { picture, stderr } = await render.finish();
+    for (const rank of [5, 6]) assert.match(stderr, new RegExp(`rank ${rank}, a worker, has gone silent`));
+    assert.ok(picture.rgb.equals((await alone(options)).rgb));
+    hosts.restore(2);
+    assert.deepEqual(await leftOver(), []);
+  });
+}
