@@ -93,7 +93,7 @@ void Scheduler::put(Queue& queue, TileId tile) {
   queue.us += tiles_[tile.value].cost_us;
 }
 
-TileId Scheduler::take(Queue& queue, std::deque<TileId>::iterator at) {
+TileId Scheduler::take(Queue& queue, std::deque<TileId>::const_iterator at) {
   const TileId tile = *at;
   queue.tiles.erase(at);
   queue.us -= tiles_[tile.value].cost_us;

@@ -60,8 +60,8 @@ constexpr double kJoinedShare = 1.0 / 64;
 constexpr std::size_t kMostJoined = 16;
 /// A spare is held back from a worker whose threads are busy once what waits beside it would keep
 /// the threads that it waits for busy for less than this many times as long: at the end of a step
-/// it would wait there while others are idle. What is no dearer than joined tiles never is, nor what
-/// would take another worker more than this many times as long.
+/// it would wait there while others are idle. What is no dearer than joined tiles never is, nor
+/// what would take another worker more than this many times as long.
 constexpr double kSpareRounds = 2;
 
 class Scheduler {
@@ -126,7 +126,7 @@ class Scheduler {
   int threads() const;
   void queue(const CostHistory& costs);
   void put(Queue& queue, TileId tile);
-  TileId take(Queue& queue, std::deque<TileId>::iterator at);
+  TileId take(Queue& queue, std::deque<TileId>::const_iterator at);
   Queue& queue_for(Worker& worker) {
     return worker.waiting.tiles.empty() ? unowned_ : worker.waiting;
   }
