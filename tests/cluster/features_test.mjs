@@ -114,9 +114,9 @@ test('The error that was asked for is about what the picture is off by', async (
 });
 
 test('--samples bounds the samples of a pixel', async () => {
-  const even = async (...options) => (await reported('even', '--sampling', 'every-pixel', ...options)).frames[0];
+  const even = async (...options) => (await reported('even', '--sampling', 'every-pixel', '--tile', '64', ...options)).frames[0];
   const one = await even(), four = await even('--samples', '4');
-  // Beside one ray in each pixel's centre those around the tiles.
+  // Beside one ray in each pixel's centre those around the tiles, which must be as large as chosen samples' are.
   const around = one.rays - kPixels;
   assert.ok(around >= 0 && around < kPixels / 8, `${around}`);
   assert.equal(four.rays, 4 * kPixels + around);
