@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cstring>
-#include <map>
 #include <vector>
 
 #include "compositor/canvas.h"
@@ -21,18 +20,17 @@ class BypassedCanvas final : public Canvas {
   void begin_view(const BeginView& view, Band band) override {
     grid_ = view.grid;
     band_ = band;
-    const auto tiles = static_cast<std::size_t>((band.last_row - band.first_row) * grid_.columns());
-    steps_.assign(tiles, kNoStep);
-    missing_ = tiles;
+    tiles_ = band_tiles(grid_, band);
+    steps_.assign(tiles_.last - tiles_.first, kNoStep);
+    missing_ = steps_.size();
     step_ = kNoStep;
   }
 
   bool place(const Samples& message) override {
-    const auto first = static_cast<std::uint32_t>(band_.first_row * grid_.columns());
-    if (!is_step(message.from, message.to) || message.tile.value < first ||
-        message.tile.value - first >= steps_.size())
+    if (!is_step(message.from, message.to) || message.tile.value < tiles_.first ||
+        message.tile.value >= tiles_.last)
       return false;
-    Step& held = steps_[message.tile.value - first];
+    Step& held = steps_[message.tile.value - tiles_.first];
     const bool was_missing = held == step_;
     held = std::max(held, message.to);
     if (was_missing && held > step_) --missing_;
@@ -74,6 +72,7 @@ class BypassedCanvas final : public Canvas {
 
   TileGrid grid_;
   Band band_;
+  TileRange tiles_;
   std::vector<Step> steps_;  ///< that each tile has taken
   std::size_t missing_ = 0;  ///< tiles that have taken no more than step_
   Step step_ = kNoStep;

@@ -22,13 +22,15 @@ class SampleCanvas final : public Canvas {
  public:
   void begin_view(const BeginView& view, Band band) override {
     view_ = view;
-    if (samples_ && samples_->grid() == view_.grid)
+    rect_ = band_rect(view.grid, band);
+    if (in_parts()) {
+      if (!aged_ || !aged_->fits(view_)) aged_.emplace(view_, band);
+      aged_->begin_view(view_.epoch, view_.frame);
+    } else if (samples_ && samples_->grid() == view_.grid) {
       samples_->restart();
-    else
+    } else {
       samples_.emplace(view_.grid, band);
-    if (!in_parts()) return;
-    if (!aged_ || !aged_->fits(view_)) aged_.emplace(view_, band);
-    aged_->begin_view(view_.epoch, view_.frame);
+    }
   }
 
   bool place(const Samples& message) override {
@@ -40,7 +42,7 @@ class SampleCanvas final : public Canvas {
     return aged_->complete() ? Step{1} : kNoStep;
   }
 
-  PixelRect rect() const override { return samples_->rect(); }
+  PixelRect rect() const override { return rect_; }
 
   Buffer pixels(Filter filter) override {
     const auto pixels = picture(filter, {});
@@ -66,7 +68,7 @@ class SampleCanvas final : public Canvas {
   /// The rows `rect` of the picture that is to be shown, filtered: each band for itself.
   void show(const Present& present, const PixelRect& rect) {
     const ImageSize image = view_.grid.image;
-    const PixelRect band = samples_->rect();
+    const PixelRect& band = rect_;
     if (present.size != image || present.filter == Filter::kBiquadratic) {
       const auto pixels = resample(
           picture(present.filter, present.moved), {band.width, band.height},
@@ -81,9 +83,10 @@ class SampleCanvas final : public Canvas {
   }
 
   BeginView view_;
-  std::optional<SampleArray> samples_;
-  std::optional<AgedBand> aged_;   ///< of views that are updated in parts
-  std::vector<std::uint8_t> rgb_;  ///< what is shown
+  PixelRect rect_;                      ///< of the band
+  std::optional<SampleArray> samples_;  ///< of the others
+  std::optional<AgedBand> aged_;        ///< of views that are updated in parts
+  std::vector<std::uint8_t> rgb_;       ///< what is shown
   Encoder encoder_;
 };
 

@@ -158,6 +158,7 @@ VolumeInfo Cluster::load_volume(const SceneVolume& volume,
   }
   wait_until([&] { return std::cmp_greater_equal(mapped_, topology_.workers); });
   if (slabs_ > 0) describe_slabs();
+  volume_loaded_ = true;
   progress_ = nullptr;
   return *volume_;
 }
@@ -208,6 +209,14 @@ void Cluster::on(Rank from, VolumeLoaded message) {
     if (slab_of_worker(w) != slab) continue;
     post_.to_worker(rank, MapVolume{message.info, message.slab, message.block});
   }
+  const int slices = message.info.geometry.size.z;
+  const Slab expected = slabs_ > 0 ? slab_of(slices, slab, slabs_) : whole_slab(slices);
+  if (message.slab != expected) {
+    throw FatalError({rank_name(from, ranks_[static_cast<std::size_t>(from.value)]),
+                      "has read another slab than it was told to",
+                      "start the same build of goldthread on every host",
+                      ExitStatus::kClusterFailed});
+  }
   readers_.try_emplace(slab, SlabReader{from, statistics_of(message.info, message.slab)});
   if (!volume_) volume_ = std::move(message.info);
 }
@@ -216,6 +225,7 @@ void Cluster::on(Rank, VolumeMapped) { ++mapped_; }
 
 void Cluster::commit(const Scene& scene) {
   ++revision_;
+  visible_by_slab_.clear();
   send_to_workers(CommitScene{revision_, scene_to_json(scene, {.internal = true})});
 }
 
@@ -237,7 +247,7 @@ int Cluster::threads() const {
 }
 
 TileGrid Cluster::cut(const ViewRequest& request, Step last) const {
-  if (!request.split) return request.grid;
+  if (!request.split || options_.strategy.order != Order::kUrgent) return request.grid;
   const TileGrid& before = view_.grid;
   const bool alike = before.image == request.grid.image && before.tile == request.grid.tile;
   return split_dear(alike ? before : request.grid, costs_, last, threads());
@@ -245,7 +255,8 @@ TileGrid Cluster::cut(const ViewRequest& request, Step last) const {
 
 void Cluster::begin_view(const Scene& scene, const ViewRequest& request) {
   costs_.fit(request.grid);
-  costs_.reproject(view_.camera, *scene.camera, visible_points_);
+  if (options_.strategy.order == Order::kUrgent)
+    costs_.reproject(view_.camera, *scene.camera, visible_points_);
   // As far as the last view came; what is not refined has but one step.
   const bool foreseen = request.update == Update::kAll && !costs_.empty();
   const Step last = foreseen ? std::max(Step{1}, view_.cast()) : Step{1};
@@ -326,10 +337,14 @@ void Cluster::on(Rank from, TileDone message) {
   if (finished == Finished::kNot) return;
   supply(worker);
   ViewState::Tile& tile = view_.tiles[message.tile.value];
-  tile.predicted_seconds += 1e-6 * costs_.predict_us(message.tile, message.to);
   // A newcomer has cast the earlier steps again: that is not what this one costs.
-  if (message.to == Step{1} || tile.worker == from)
+  if (message.to == Step{1} || tile.worker == from) {
+    if (finished == Finished::kFirst) {
+      tile.predicted_seconds += 1e-6 * scheduler_.predicted_us(message.tile);
+      tile.compared_seconds += 1e-6 * message.cost_us;
+    }
     costs_.record(message.tile, message.to, std::chrono::microseconds(message.cost_us));
+  }
   // Rays are those of the picture, whoever cast them.
   if (finished == Finished::kFirst) {
     view_.rays += message.rays;
@@ -397,7 +412,7 @@ void Cluster::lose(Rank rank) {
   const bool any_worker = std::any_of(ranks_.begin(), ranks_.end(), [](const RankState& r) {
     return r.role == Role::kWorker && !r.lost;
   });
-  if (state.role != Role::kWorker || !any_worker || !volume_) {
+  if (state.role != Role::kWorker || !any_worker || !volume_loaded_) {
     throw FatalError({rank_name(rank, state),
                       "has been silent for " + std::to_string(kSilence.count() / 1000) + " s",
                       "look at that host's log, then start again", ExitStatus::kClusterFailed});

@@ -84,7 +84,8 @@ struct ViewState {
   struct Tile {
     Rank worker;
     double seconds = 0;            ///< of processors, in all its steps
-    double predicted_seconds = 0;  ///< that they were thought to take
+    double predicted_seconds = 0;  ///< that those which began where the last one ended were to take
+    double compared_seconds = 0;   ///< and took
     TileQuality quality = {};
   };
   std::vector<Tile> tiles;
@@ -171,6 +172,8 @@ class Cluster {
   /// That compute, of all workers that are not lost.
   int threads() const;
   Post& post() { return post_; }
+  /// Whether the volume is cut into slabs.
+  bool has_slabs() const { return slabs_ > 0; }
 
   /// Ends the job on every other rank. True if none was lost.
   bool stop();
@@ -235,6 +238,7 @@ class Cluster {
   std::map<int, double> read_;  // by rank that reads: the fraction that it has read
   std::size_t mapped_ = 0;      // workers that hold the volume, or their slab
   std::optional<VolumeInfo> volume_;
+  bool volume_loaded_ = false;         // on all workers: from then on one may be lost
   int slabs_ = 0;                      // 0: the volume is not cut
   std::map<int, SlabReader> readers_;  // by slab: the first rank that has read it
   std::map<int, std::vector<glm::dvec3>> visible_by_slab_;

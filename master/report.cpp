@@ -108,7 +108,7 @@ std::optional<double> prediction_error(const ViewState& view) {
   std::vector<double> predicted, actual;
   for (const ViewState::Tile& tile : view.tiles) {
     predicted.push_back(tile.predicted_seconds);
-    actual.push_back(tile.seconds);
+    actual.push_back(tile.compared_seconds);
   }
   return prediction_error(predicted, actual);
 }

@@ -16,6 +16,7 @@ Scheduler::Scheduler(const std::vector<int>& capacity, Strategy strategy)
     worker.capacity = places;
     workers_.push_back(std::move(worker));
   }
+  count_threads();
 }
 
 void Scheduler::begin_view(const TileGrid& grid, const CostHistory& costs, Step last) {
@@ -55,10 +56,10 @@ std::vector<int> Scheduler::alive() const {
   return alive;
 }
 
-int Scheduler::threads() const {
-  int threads = 0;
-  for (const Worker& worker : workers_) threads += worker.lost ? 0 : worker.threads();
-  return std::max(1, threads);
+void Scheduler::count_threads() {
+  threads_ = 0;
+  for (const Worker& worker : workers_) threads_ += worker.lost ? 0 : worker.threads();
+  threads_ = std::max(1, threads_);
 }
 
 void Scheduler::deal_alike() {
@@ -147,12 +148,12 @@ void Scheduler::queue(const CostHistory& costs) {
     put(owner, {i});
   }
   open_ = tiles_.size();
-  joined_us_ = std::min(kJoinedUs, kJoinedShare * total_us / threads());
+  joined_us_ = std::min(kJoinedUs, kJoinedShare * total_us / threads_);
 }
 
 bool Scheduler::is_due(const Worker& taker, TileId tile, double waiting_us, int threads) const {
   if (std::cmp_less(taker.held.size(), taker.threads())) return true;
-  if (taker.threads() == this->threads()) return true;  // there is nobody else
+  if (taker.threads() == threads_) return true;  // there is nobody else
   const double cost_us = tiles_[tile.value].cost_us;
   // Nobody would take over what has so much more to it than this step.
   if (tiles_[tile.value].all_cost_us > kSpareRounds * cost_us) return true;
@@ -168,7 +169,7 @@ std::optional<TileId> Scheduler::take(int worker) {
   // What it was dealt once and for all nobody else waits for.
   const bool own = source == worker;
   if (strategy_.share == Share::kOnDemand &&
-      !is_due(taker, queue.tiles.front(), queue.us, own ? taker.threads() : threads()))
+      !is_due(taker, queue.tiles.front(), queue.us, own ? taker.threads() : threads_))
     return {};
   return take(source, queue.tiles.begin());
 }
@@ -282,6 +283,7 @@ std::vector<TileId> Scheduler::take_back(int worker) {
 void Scheduler::worker_lost(int worker) {
   Worker& lost = workers_.at(static_cast<std::size_t>(worker));
   lost.lost = true;
+  count_threads();
   Queue again;
   const auto give_back = [&](const auto& tiles) {
     for (const TileId tile : tiles) {

@@ -105,6 +105,8 @@ class Scheduler {
   /// Its quanta that are not done yet.
   std::size_t open() const { return open_; }
   bool finished() const { return open_ == 0; }
+  /// What a tile was predicted to take when the open step was queued, µs.
+  double predicted_us(TileId tile) const { return tiles_[tile.value].cost_us; }
 
  private:
   /// Tiles that wait, the most urgent first, and what they are predicted to take.
@@ -133,7 +135,7 @@ class Scheduler {
   void deal_alike();
   void deal_by_cost(const CostHistory& costs);
   std::vector<int> alive() const;
-  int threads() const;
+  void count_threads();
   void queue(const CostHistory& costs);
   /// What waits for a worker, or of kNobody for whoever comes first.
   Queue& queue_of(int owner) {
@@ -159,6 +161,7 @@ class Scheduler {
   LargestOf longest_wait_{0};  ///< what waits for each worker / its threads, µs
   std::vector<Tile> tiles_;
   Queue unowned_;
+  int threads_ = 1;       ///< of all workers that are not lost
   double joined_us_ = 0;  ///< that joined tiles may take
   Step step_ = kNoStep;
   Step last_{1};  ///< foreseen

@@ -142,7 +142,15 @@ void ServeJob::on(const ViewerEdit& event) {
     to_pages(Reply{event.viewer, refused_message(event.serial, edited.failure())});
     return;
   }
-  scene_ = request_.resolve(*edited, volume_);
+  Scene resolved = request_.resolve(*edited, volume_);
+  if (cluster_.has_slabs() &&
+      request_.step_mm(resolved, volume_) > longest_slab_step_mm(volume_.geometry)) {
+    const Failure too_long{"step", "is longer than the slabs of this volume allow",
+                           "choose a smaller step"};
+    to_pages(Reply{event.viewer, refused_message(event.serial, too_long)});
+    return;
+  }
+  scene_ = std::move(resolved);
   ++edits_;
   note_input(event.viewer, event.serial);
   want_view(true);

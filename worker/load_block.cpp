@@ -30,6 +30,10 @@ Result<VolumeBlock> load_slab(const LoadVolume& message, LoadOptions options) {
   if (!slices) return slices.failure();
   VolumeInfo& info = slices->info;
   const int layers = layers_of(info.geometry.size.z);
+  if (message.slab >= message.slabs) {
+    return Failure{message.file, "is asked for a slab that it does not have",
+                   "start the same build of goldthread on every host", ExitStatus::kClusterFailed};
+  }
   if (std::cmp_greater(message.slabs, layers)) {
     return Failure{message.file,
                    "has " + std::to_string(info.geometry.size.z) + " slices, too few for " +

@@ -59,7 +59,7 @@ class CommittedScene {
   std::vector<bool> visible_cells() const {
     std::vector<bool> visible(distances_.size());
     std::transform(distances_.begin(), distances_.end(), visible.begin(),
-                   [](std::uint8_t distance) { return distance == kCellIsVisible; });
+                   [](std::uint8_t distance) { return (distance & kCellIsVisible) != 0; });
     visible.resize(volume_->cells().size());  // without padding
     return visible;
   }
@@ -116,6 +116,7 @@ class RayCaster final : public SampleSource, public SlabCaster {
   }
 
   CastCounts advance(const RaySpan& rays, Stage stage) const override {
+    if (!scene_->hits_something()) return {.rays = rays.positions.size()};
     return scene_->kernel().cast(
         {scene_->terms(), view_, rays.positions, rays.samples, rays.surfaces, stage});
   }
@@ -158,7 +159,9 @@ std::vector<glm::dvec3> visible_points(const CommittedScene& scene, std::size_t 
   const std::size_t end = in_layer * (volume.slab().last_layer - layers.first);
   const auto seen =
       std::size_t(std::count(is_visible.begin() + begin, is_visible.begin() + end, true));
-  const std::size_t total = seen > 0 ? seen : end - begin;
+  // Other slabs may have what this one has not.
+  const std::size_t all = volume.is_whole() ? end - begin : 0;
+  const std::size_t total = seen > 0 ? seen : all;
   const std::size_t wanted = std::min(most, total);
   std::vector<glm::dvec3> chosen;
   std::size_t passed = 0;
@@ -183,10 +186,6 @@ std::shared_ptr<const SlabCaster> make_slab_caster(std::shared_ptr<const Committ
   return std::make_shared<const RayCaster>(std::move(scene), camera, size);
 }
 
-double half_step_in_slices(const CommittedScene& scene) {
-  const glm::dmat3 linear(scene.volume().info().geometry.index_from_world());
-  const glm::dvec3 along_z(linear[0].z, linear[1].z, linear[2].z);
-  return 0.5 * scene.terms().step_mm * glm::length(along_z);
-}
+double step_mm(const CommittedScene& scene) { return scene.terms().step_mm; }
 
 }  // namespace goldthread

@@ -38,9 +38,7 @@ std::shared_ptr<const SampleSource> make_ray_caster(std::shared_ptr<const Commit
 std::shared_ptr<const SlabCaster> make_slab_caster(std::shared_ptr<const CommittedScene> scene,
                                                    const Camera& camera, ImageSize size);
 
-/// How many slices of voxels a segment may reach beyond the slab that its middle lies in: slabs
-/// hold kMostOverhang.
-double half_step_in_slices(const CommittedScene& scene);
-constexpr double kMostOverhang = 0.95;
+/// The step of its rays, mm: the one that was asked for, or the default.
+double step_mm(const CommittedScene& scene);
 
 }  // namespace goldthread

@@ -28,13 +28,12 @@ constexpr std::size_t kVisiblePoints = 64;
 constexpr CoreNeed kCoreNeed{.sender = 1, .receiver = 0.5};
 
 /// A slab holds so much of its neighbours as segments of a certain length need.
-void expect_short_steps(const CommittedScene& scene) {
-  const double overhang = half_step_in_slices(scene);
-  if (overhang <= kMostOverhang) return;
+void expect_short_steps(const CommittedScene& scene, const VolumeGeometry& geometry) {
+  const double longest = longest_slab_step_mm(geometry);
+  if (step_mm(scene) <= longest) return;
   throw FatalError({"--step",
-                    "is so long that rays cross " + std::to_string(2 * overhang) +
-                        " slices of the volume in one step, and slabs allow " +
-                        std::to_string(2 * kMostOverhang),
+                    "is so long that rays leave their slab: " + std::to_string(step_mm(scene)) +
+                        " mm, and slabs of this volume allow " + std::to_string(longest),
                     "give a smaller --step, or --error", ExitStatus::kUsage});
 }
 
@@ -67,6 +66,7 @@ bool WorkerRole::run() {
         heartbeat_.beat(post_);  // also when messages never end
         if (quanta_.size() >= kMostQuanta) push_quanta();
       }
+      if (stop_) break;
       push_quanta();
       finish_loading();
       finish_counting();
@@ -83,8 +83,8 @@ bool WorkerRole::run() {
 }
 
 void WorkerRole::on(BeginSession message) {
-  require(message.threads > 0 && message.tiles > 0 && message.compositors > 0,
-          "was given a session without ranks");
+  require(!pool_ && message.threads > 0 && message.tiles > 0 && message.compositors > 0,
+          "was given a session without ranks, or two");
   session_ = message;
   const auto wake = [this] { post_.wake(); };
   if (message.slabs > 0) {
@@ -127,8 +127,9 @@ void WorkerRole::finish_loading() {
 }
 
 void WorkerRole::on(MapVolume message) {
-  require(message.block.bytes ==
-              Volume::block_bytes(message.info.geometry, message.info.type, message.slab),
+  require(is_slab_of(message.slab, message.info.geometry.size.z) &&
+              message.block.bytes ==
+                  Volume::block_bytes(message.info.geometry, message.info.type, message.slab),
           "was given a volume of another size than its block");
   auto memory = map_shared_block(message.block);
   volume_ =
@@ -160,7 +161,8 @@ void WorkerRole::on(DescribeVolume message) {
 }
 
 void WorkerRole::on(const WorkerGone& message) {
-  require(slabs_ != nullptr, "was told of a worker that it does not share slabs with");
+  require(slabs_ && slabs_->knows(message.worker),
+          "was told of a worker that it does not share slabs with");
   slabs_->worker_gone(static_cast<int>(message.worker));
 }
 
@@ -169,7 +171,7 @@ void WorkerRole::on(const CommitScene& message) {
   const Scene scene = value_or_throw(
       parse_scene(message.scene_json, "the master's scene", {}, {.allow_internal = true}));
   scene_ = commit_scene(scene, volume_);
-  if (slabs_) expect_short_steps(*scene_);
+  if (!volume_->is_whole()) expect_short_steps(*scene_, volume_->info().geometry);
   revision_ = message.revision;
   post_.to_master(SceneCommitted{revision_, feature_names(*scene_), kernel_name(*scene_),
                                  visible_points(*scene_, kVisiblePoints)});

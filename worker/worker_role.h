@@ -28,6 +28,13 @@ class WorkerRole {
  public:
   explicit WorkerRole(Transport& transport, SourceMaker make_source = make_ray_caster,
                       TileCaster cast_tile = refine_tile);
+  /// Threads that wait for other workers are let go first.
+  ~WorkerRole() {
+    if (slabs_) slabs_->stop();
+  }
+  WorkerRole(const WorkerRole&) = delete;
+  WorkerRole& operator=(const WorkerRole&) = delete;
+
   /// Serves until the master says stop. What fails is told to the master, which ends the job. True
   /// if no rank was lost meanwhile.
   bool run();

@@ -29,7 +29,8 @@ constexpr double kPredictedTurnDegrees = 5;
 constexpr double kDolly = 0.92;
 constexpr double kPan = 0.06;  ///< of the distance
 
-std::unique_ptr<Session> session_of(const Subject& subject, int workers, Strategy strategy = {}) {
+std::unique_ptr<Session> session_of(const Subject& subject, int workers,
+                                    Strategy strategy = {.spare_us = kSpareUs}) {
   ClusterOptions options;
   options.threads = 1;
   options.strategy = strategy;

@@ -30,7 +30,7 @@ ViewCut cut_of(Tiling tiling, ImageSize image, int threads) {
 }
 
 std::vector<Method> all_methods() {
-  constexpr Strategy kByCost, kInOrder{Order::kScreen};
+  constexpr Strategy kByCost{.spare_us = kSpareUs}, kInOrder{Order::kScreen};
   return {{"64 squares, a block for each worker",
            Tiling::kSquares64,
            {Order::kScreen, Share::kContiguous}},

@@ -13,8 +13,6 @@ namespace goldthread::bench {
 namespace {
 
 constexpr Carrier kCarriers[] = {Carrier::kSharedMemory, Carrier::kTcp, Carrier::kThreads};
-/// Of the volume; N > 1 measures the merging of ray segments once there are any to merge.
-constexpr int kSlabs[] = {1};
 constexpr ImageSize kBackEndSize{1024, 1024};
 constexpr int kBackEndRepeats = 21, kQuickBackEndRepeats = 5;
 constexpr int kSmallTile = 16;
@@ -58,11 +56,8 @@ std::vector<RanksSetup> master_setups(bool quick) {
 
 std::vector<RanksSetup> back_end_setups(bool quick) {
   std::vector<RanksSetup> setups;
-  for (const int slabs : kSlabs)
-    for (const int side : sides(quick)) {
-      setups.push_back(setup_of(Carrier::kSharedMemory, side, 1, "master,worker"));
-      setups.back().slabs = slabs;
-    }
+  for (const int side : sides(quick))
+    setups.push_back(setup_of(Carrier::kSharedMemory, side, 1, "master,worker"));
   return setups;
 }
 

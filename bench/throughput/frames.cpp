@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "bench/throughput/frames.h"
 
-#include <ctime>
 #include <numeric>
 #include <thread>
+
+#include "common/base/thread_clock.h"
 
 namespace goldthread::bench {
 namespace {
@@ -13,13 +14,6 @@ constexpr std::chrono::seconds kPatience{60};
 constexpr int kWarmUp = 5;
 constexpr std::size_t kMostFrames = 20'000;
 constexpr std::chrono::microseconds kPace{16'667};
-
-/// Of the calling thread.
-double cpu_seconds() {
-  timespec time{};
-  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &time);
-  return double(time.tv_sec) + 1e-9 * double(time.tv_nsec);
-}
 
 class FrameDriver {
  public:
@@ -91,7 +85,7 @@ std::vector<double> back_to_back(Cluster& cluster, FrameDriver& driver,
 PacedFrames paced(Cluster& cluster, FrameDriver& driver, const FramesRequest& request) {
   PacedFrames result;
   const auto begin = Clock::now();
-  const double cpu_before = cpu_seconds();
+  const double cpu_before = thread_seconds();
   auto next = begin;
   for (; next - begin < request.least_time; ++result.frames) {
     driver.begin();
@@ -102,7 +96,7 @@ PacedFrames paced(Cluster& cluster, FrameDriver& driver, const FramesRequest& re
     for (auto now = Clock::now(); now < next; now = Clock::now())
       cluster.poll(std::chrono::duration_cast<std::chrono::microseconds>(next - now));
   }
-  result.master_cpu_seconds = cpu_seconds() - cpu_before;
+  result.master_cpu_seconds = thread_seconds() - cpu_before;
   result.seconds = std::chrono::duration<double>(Clock::now() - begin).count();
   return result;
 }
@@ -128,10 +122,10 @@ FramesResult run_frames(Cluster& cluster, const Scene& scene, const FramesReques
   FramesResult result;
   result.tiles = request.grid.count();
   FrameDriver driver(cluster, scene, request.grid);
-  const double cpu_before = cpu_seconds();
+  const double cpu_before = thread_seconds();
   result.seconds = back_to_back(cluster, driver, request, false);
   result.lossless_seconds = back_to_back(cluster, driver, request, true);
-  result.master_cpu_seconds = cpu_seconds() - cpu_before;
+  result.master_cpu_seconds = thread_seconds() - cpu_before;
   count_samples(cluster, driver.frames(), result);
   result.paced = paced(cluster, driver, request);
   return result;

@@ -23,7 +23,6 @@ struct RanksSetup {
   ImageSize size;
   int tile_px = 64;
   int workers = 1;
-  int slabs = 1;  ///< 1: the volume is replicated
   std::string bypass;
 };
 

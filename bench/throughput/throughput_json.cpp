@@ -14,7 +14,6 @@ Json json_of(const FramesRow& row) {
             {"size", {setup.size.width, setup.size.height}},
             {"tile", setup.tile_px},
             {"workers", setup.workers},
-            {"slabs", setup.slabs},
             {"bypassed", setup.bypass},
             {"framesPerSecond", row.frames_per_second()},
             {"losslessFramesPerSecond", row.lossless_per_second()},

@@ -94,9 +94,7 @@ Plot back_end_plot(const ThroughputReport& report) {
   Curves curves;
   for (const FramesRow& row : report.back_end) {
     const double side = row.setup.size.width;
-    const std::string slabs =
-        row.setup.slabs == 1 ? "replicated" : fmt::format("{} slabs", row.setup.slabs);
-    const std::string which = fmt::format("{}, {}", slabs, name_of(row.setup.carrier));
+    const std::string which = name_of(row.setup.carrier);
     const char* const color = color_of(row.setup.carrier);
     curves.add(which + ", JPEG", solid(color, 7), side, row.frames_per_second());
     curves.add(which + ", lossless", dashed(color), side, row.lossless_per_second());

@@ -22,4 +22,9 @@ struct ThreadClock {
   }
 };
 
+/// What the calling thread has computed since it began, s.
+inline double thread_seconds() {
+  return std::chrono::duration<double>(ThreadClock::now().time_since_epoch()).count();
+}
+
 }  // namespace goldthread

@@ -139,6 +139,10 @@ std::optional<Failure> apply_options(const Subcommand& sub, const Environment& e
 /// What the options mean together.
 std::optional<Failure> check_together(const Options& options) {
   const bool bench = options.command == Command::kBench;
+  if (options.slabs && options.bypass.worker) {
+    return usage("--bypass", "a by-passed worker sends no rays from slab to slab",
+                 "leave out --bypass worker, or --data slabs");
+  }
   if (options.input.empty() && !bench) {
     return usage("command line", "no SCENE is given", "name a scene or volume file");
   }

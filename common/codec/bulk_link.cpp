@@ -3,8 +3,9 @@
 
 #include <algorithm>
 #include <cstring>
-#include <ctime>
 #include <utility>
+
+#include "common/base/thread_clock.h"
 
 namespace goldthread {
 namespace {
@@ -26,13 +27,6 @@ constexpr int kTrains = 3;
 /// Where a train takes half a second, bytes/s, one is enough. Not where it takes less: a core that
 /// was busy elsewhere may be all there is to it.
 constexpr double kSlow = kTrain * kProbeBytes / 0.5;
-
-/// CPU time of this thread, s: the cores may be busy with something else.
-double cpu_seconds() {
-  timespec time{};
-  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &time);
-  return static_cast<double>(time.tv_sec) + 1e-9 * static_cast<double>(time.tv_nsec);
-}
 
 }  // namespace
 
@@ -80,14 +74,14 @@ BulkTag BulkLink::pack(RowCodec& codec, Buffer& payload, std::span<const RowLayo
 std::optional<Buffer> BulkLink::compress(RowCodec& codec, const Buffer& payload,
                                          std::span<const RowLayout> layouts, bool both_ways) {
   const auto raw = static_cast<double>(payload.size());
-  const double begin = cpu_seconds();
+  const double begin = thread_seconds();
   auto packed = codec.compress(payload.bytes(), layouts);
-  const double middle = cpu_seconds();
+  const double middle = thread_seconds();
   compress_seconds_.add(middle - begin, raw);
   ratio_.add(packed ? static_cast<double>(packed->size()) : raw, raw);
   if (packed && both_ways) {
     static_cast<void>(codec.decompress(packed->bytes(), layouts));
-    decompress_seconds_.add(cpu_seconds() - middle, raw);
+    decompress_seconds_.add(thread_seconds() - middle, raw);
   }
   return packed;
 }

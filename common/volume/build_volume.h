@@ -27,7 +27,9 @@ using SliceReader =
     std::function<std::optional<Failure>(int first, int count, std::span<std::byte> to)>;
 
 /// The same of a slab, from slices that are read a few at a time, in ascending order, some of them
-/// twice. Statistics are those of the slab's own voxels; the histogram is count_voxels()'s work.
+/// twice. Statistics are those of the slab's own
+/// voxels (SlabStatistics); the histogram of all slabs is count_voxels()'s work. Ten slices at
+/// least are in memory at a time.
 std::optional<Failure> fill_slab(VolumeInfo& info, const Slab& slab, const SliceReader& read,
                                  std::span<std::byte> block,
                                  const std::function<void(double)>& progress = nullptr);

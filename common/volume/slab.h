@@ -32,6 +32,11 @@ constexpr int layers_of(int slices) { return (slices + kCellEdge - 1) / kCellEdg
 
 /// All of a volume of so many slices.
 constexpr Slab whole_slab(int slices) { return {0, layers_of(slices)}; }
+/// For what a peer says.
+constexpr bool is_slab_of(const Slab& slab, int slices) {
+  return slab.first_layer >= 0 && slab.first_layer < slab.last_layer &&
+         slab.last_layer <= layers_of(slices);
+}
 constexpr bool is_whole(const Slab& slab, int slices) { return slab == whole_slab(slices); }
 
 /// Slab `index` of `count`, as even as whole layers allow; `count` must not exceed layers_of().

@@ -10,7 +10,7 @@
 
 namespace goldthread {
 
-/// Of a slab's own voxels.
+/// Of a slab's own voxels; extremes may be those of the slice behind them.
 struct SlabStatistics {
   std::uint64_t voxels = 0;
   std::uint64_t not_finite = 0;

@@ -108,6 +108,12 @@ double Volume::at(int i, int j, int k) const {
   return 0;
 }
 
+double longest_slab_step_mm(const VolumeGeometry& geometry) {
+  const glm::dmat3 linear(geometry.index_from_world());
+  const glm::dvec3 slices_per_mm(linear[0].z, linear[1].z, linear[2].z);
+  return 2 * kMostOverhang / glm::length(slices_per_mm);
+}
+
 const char* name_of(VoxelType type) {
   switch (type) {
     case VoxelType::kUInt8:

@@ -135,6 +135,11 @@ class Volume {
 
 constexpr std::size_t kBlockAlignment = 64;
 
+/// Slabs hold so much of their neighbours, in slices, as half a segment may reach beyond a border.
+constexpr double kMostOverhang = 0.95;
+/// The longest step of rays through slabs of a volume, mm.
+double longest_slab_step_mm(const VolumeGeometry& geometry);
+
 /// "uint8", "int16", "float32" …
 const char* name_of(VoxelType type);
 

@@ -39,8 +39,10 @@ class FileSlices {
     const std::span<std::byte> stored = is_held ? to : std::span(stored_);
     stream_->seekg(std::streamoff(at));
     if (!stream_->read(reinterpret_cast<char*>(stored.data()), std::streamsize(bytes)))
-      return failure_of(place_.file, fmt::format("reading stopped after {} bytes", at),
-                        "check the file and the disk");
+      return failure_of(
+          place_.file,
+          fmt::format("reading stopped after {} bytes", at + std::uint64_t(stream_->gcount())),
+          "check the file and the disk");
     take_component(stored, place_.type, 1, 0, to);
     return std::nullopt;
   }

@@ -89,7 +89,11 @@ std::optional<VoxelPlace> in_nrrd(const fs::path& file, StoredType type) {
 
 std::optional<VoxelPlace> in_meta_image(const fs::path& file, StoredType type) {
   const TextHeader header(file, '=', "elementdatafile");
-  const auto is_true = [&](const char* key) { return lower(header[key]) == "true"; };
+  // As MetaIO reads them: by the first character.
+  const auto is_true = [&](const char* key) {
+    const std::string value = lower(header[key]);
+    return !value.empty() && (value[0] == 't' || value[0] == '1');
+  };
   const bool native =
       bytes_of(type) == 1 || !(is_true("binarydatabyteordermsb") || is_true("elementbyteordermsb"));
   if (!header.ended() || !is_true("binarydata") || is_true("compresseddata") ||

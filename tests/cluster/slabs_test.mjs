@@ -68,7 +68,7 @@ if (how === 'loopback') {
   };
   test('More slabs than workers are refused', () => refuses(['--workers', '2', '--data', 'slabs:3'], 2, /--data: 3 slabs need as many workers/));
   test('More slabs than layers of cells are refused', () => refuses(['--workers', '6', '--data', 'slabs:6'], 2, /37 slices, too few for 6 slabs/));
-  test('Steps too long for slabs are refused', () => refuses(['--workers', '2', '--data', 'slabs', '--step', '9'], 2, /--step: is so long/));
+  test('Steps too long for slabs are refused', () => refuses(['--workers', '2', '--data', 'slabs', '--step', '9'], 2, /--step: is so long that rays leave their slab/));
 } else if (how === 'mpi') {
   test('Slabs under mpirun give the picture of the whole', async () => {
     await expectSame(scenes['surfaces in dvr'], '157x123', [], ['--data', 'slabs', '--threads', '1'], 5);

@@ -63,7 +63,6 @@ class GreatestValue {
   HWY_INLINE void march() {
     const FloatMask hit = rays_.hit();
     consider(hn::And(hit, hn::Eq(rays_.begin, hn::Zero(kFloats))), rays_.first);
-    consider(hn::And(hit, hn::Gt(rays_.until, rays_.last)), rays_.last);
     for (int known = next_promising(); known > 0; known = next_promising()) {
       // What to beat is asked one run late, so that nothing waits for the last sample.
       const Floats before = best_;
@@ -74,6 +73,8 @@ class GreatestValue {
       }
       to_beat_ = before;
     }
+    // Last, as through slabs: of equal values the first one counts.
+    consider(hn::And(hit, hn::Gt(rays_.until, rays_.last)), rays_.last);
   }
 
   /// Rays whose greatest value lies in this slab.

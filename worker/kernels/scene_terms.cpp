@@ -77,8 +77,8 @@ double step_of(double wanted_mm, const VolumeGeometry& geometry, Features featur
 }
 
 double step_for_error(double error, const VolumeGeometry& geometry, Features features) {
-  constexpr double kShare = 0.25;  // of the error; squared it is 1/16 of it
-  constexpr double kMostVoxels = 2;
+  constexpr double kShare = 0.25;      // of the error; squared it is 1/16 of it
+  constexpr double kMostVoxels = 1.9;  // what slabs allow, so that they make the same picture
   const double least = default_voxels(features);
   double voxels = least;
   if (features.dvr && features.shading)

@@ -29,7 +29,8 @@ double step_of(double wanted_mm, const VolumeGeometry& geometry, Features featur
 /// The step, mm, for a picture that may have an RMS error of `error` in 1/255 from all causes: the
 /// step alone causes a quarter of it, by what docs/benchmarks.md found on the default scene (0.17
 /// at a step of one voxel, second order; with shading 1.58, order 1.25). Never below the default,
-/// nor beyond two voxels, as far as this was measured; surfaces are found wherever the steps are.
+/// nor beyond 1.9 voxels, about as far as this was measured; surfaces are found wherever the steps
+/// are.
 double step_for_error(double error, const VolumeGeometry& geometry, Features features);
 
 FieldLayout field_layout_of(const Volume& volume);

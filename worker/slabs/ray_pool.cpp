@@ -9,8 +9,9 @@
 
 namespace goldthread {
 
-RayPool::RayPool(unsigned threads, bool idle_priority, std::function<void()> notify)
-    : notify_(std::move(notify)) {
+RayPool::RayPool(unsigned threads, bool idle_priority, std::counting_semaphore<>& cores,
+                 std::function<void()> notify)
+    : cores_(cores), notify_(std::move(notify)) {
   for (unsigned i = 0; i < threads; ++i) {
     threads_.emplace_back([this, idle_priority](const std::stop_token& stop) {
       if (idle_priority) give_way();
@@ -98,7 +99,9 @@ RayPool::Done RayPool::advance(const Task& task, const SlabCaster& caster) const
                       "start the same build of goldthread on every host",
                       ExitStatus::kClusterFailed});
   }
+  cores_.acquire();
   batch->taken = caster.advance(batch->span(), batch->stage).samples;
+  cores_.release();
   return {task.from, answer_of(*batch, task.request.epoch, task.request.job)};
 }
 

@@ -10,6 +10,7 @@
 #include <memory>
 #include <mutex>
 #include <optional>
+#include <semaphore>
 #include <thread>
 #include <vector>
 
@@ -26,7 +27,9 @@ class RayPool {
     RaysAdvanced answer;
   };
 
-  RayPool(unsigned threads, bool idle_priority, std::function<void()> notify);
+  /// A thread holds one of `cores` while it computes.
+  RayPool(unsigned threads, bool idle_priority, std::counting_semaphore<>& cores,
+          std::function<void()> notify);
   ~RayPool();
 
   /// From now on only rays of this view are taken.
@@ -46,6 +49,7 @@ class RayPool {
   void work(const std::stop_token& stop);
   Done advance(const Task& task, const SlabCaster& caster) const;
 
+  std::counting_semaphore<>& cores_;
   std::function<void()> notify_;
   mutable std::mutex mutex_;
   std::condition_variable_any pushed_;

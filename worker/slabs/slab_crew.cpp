@@ -9,9 +9,10 @@ namespace goldthread {
 SlabCrew::SlabCrew(Topology topology, Rank own, const BeginSession& session,
                    std::function<void()> notify)
     : topology_(topology),
+      cores_(session.threads),
       exchange_(topology.worker_index(own), topology.workers, static_cast<int>(session.slabs),
-                notify),
-      pool_(session.threads, session.interactive, notify) {}
+                cores_, notify),
+      pool_(session.threads, session.interactive, cores_, notify) {}
 
 std::shared_ptr<const SampleSource> SlabCrew::begin_view(
     const BeginView& view, std::shared_ptr<const CommittedScene> scene,

@@ -5,6 +5,8 @@
 
 #include <functional>
 #include <memory>
+#include <semaphore>
+#include <utility>
 
 #include "common/protocol/topology.h"
 #include "common/transport/post.h"
@@ -18,11 +20,6 @@ class SlabCrew {
  public:
   /// Of the worker of rank `own`; `notify` is called when there is something to send.
   SlabCrew(Topology topology, Rank own, const BeginSession& session, std::function<void()> notify);
-  /// The threads that wait here must be able to end.
-  ~SlabCrew() { exchange_.stop(); }
-  SlabCrew(const SlabCrew&) = delete;
-  SlabCrew& operator=(const SlabCrew&) = delete;
-
   /// What is asked for in older views is dropped. The source must not outlive this.
   std::shared_ptr<const SampleSource> begin_view(const BeginView& view,
                                                  std::shared_ptr<const CommittedScene> scene,
@@ -32,6 +29,8 @@ class SlabCrew {
   void take(AdvanceRays request, Rank from) { pool_.push(from, std::move(request)); }
   /// False if it is no answer to what was asked.
   bool complete(const RaysAdvanced& answer) { return exchange_.complete(answer); }
+  /// Whether there is a worker of that index.
+  bool knows(std::uint32_t worker) const { return std::cmp_less(worker, topology_.workers); }
   /// Throws FatalError if nobody else has that worker's slab.
   void worker_gone(int worker);
   /// Sends what there is to send.
@@ -40,6 +39,8 @@ class SlabCrew {
 
  private:
   Topology topology_;
+  /// Of the threads that take rays through this slab, the worker's own and others'.
+  std::counting_semaphore<> cores_;
   SlabExchange exchange_;
   RayPool pool_;
 };

@@ -16,7 +16,9 @@ class SlabExchange::Link final : public SlabLink {
 
   bool advance(int slab, RayBatch& batch) const override {
     if (slab != exchange_.slab()) return exchange_.ask(epoch_, slab, batch);
+    exchange_.cores_.acquire();
     batch.taken = caster_->advance(batch.span(), batch.stage).samples;
+    exchange_.cores_.release();
     return true;
   }
 
@@ -26,9 +28,11 @@ class SlabExchange::Link final : public SlabLink {
   std::shared_ptr<const SlabCaster> caster_;
 };
 
-SlabExchange::SlabExchange(int own, int workers, int slabs, std::function<void()> notify)
+SlabExchange::SlabExchange(int own, int workers, int slabs, std::counting_semaphore<>& cores,
+                           std::function<void()> notify)
     : own_(own),
       slabs_(slabs),
+      cores_(cores),
       notify_(std::move(notify)),
       holders_(static_cast<std::size_t>(slabs)) {
   for (int worker = 0; worker < workers; ++worker)
@@ -62,6 +66,7 @@ bool SlabExchange::ask(Epoch epoch, int slab, RayBatch& batch) {
   if (stopped_ || epoch != epoch_) return false;
   const std::uint32_t job = ++last_job_;
   Call& call = calls_[job];
+  call.epoch = epoch;
   call.batch = &batch;
   send(job, call, slab);
   lock.unlock();
@@ -76,7 +81,7 @@ bool SlabExchange::ask(Epoch epoch, int slab, RayBatch& batch) {
 void SlabExchange::send(std::uint32_t job, Call& call, int slab) {
   const auto& holders = holders_[static_cast<std::size_t>(slab)];
   call.worker = holders[(job + static_cast<std::uint32_t>(own_)) % holders.size()];
-  requests_.push_back({call.worker, request_of(*call.batch, epoch_, job)});
+  requests_.push_back({call.worker, request_of(*call.batch, call.epoch, job)});
 }
 
 std::vector<SlabExchange::Request> SlabExchange::take_requests() {
@@ -105,7 +110,7 @@ bool SlabExchange::worker_gone(int worker) {
     std::erase(holders, worker);
     if (holders.empty()) return false;
     for (auto& [job, call] : calls_)
-      if (call.worker == worker && !call.done) send(job, call, slab);
+      if (call.worker == worker && !call.done && call.epoch == epoch_) send(job, call, slab);
   }
   notify_();
   return true;

@@ -9,6 +9,7 @@
 #include <map>
 #include <memory>
 #include <mutex>
+#include <semaphore>
 #include <vector>
 
 #include "common/protocol/messages.h"
@@ -23,9 +24,10 @@ class SlabExchange {
     AdvanceRays message;
   };
 
-  /// Worker `own` of `workers`, who share `slabs` slabs in turn; `notify` is called when there is
-  /// something to be sent.
-  SlabExchange(int own, int workers, int slabs, std::function<void()> notify);
+  /// Worker `own` of `workers`, who share `slabs` slabs in turn. Who takes rays through the own
+  /// slab holds one of `cores` meanwhile. `notify` is called when there is something to be sent.
+  SlabExchange(int own, int workers, int slabs, std::counting_semaphore<>& cores,
+               std::function<void()> notify);
 
   /// Ends what waits for an older view.
   void begin_view(Epoch epoch);
@@ -47,6 +49,7 @@ class SlabExchange {
  private:
   class Link;
   struct Call {
+    Epoch epoch;
     RayBatch* batch = nullptr;
     int worker = 0;
     bool done = false;
@@ -58,6 +61,7 @@ class SlabExchange {
 
   int own_;
   int slabs_;
+  std::counting_semaphore<>& cores_;
   std::function<void()> notify_;
   std::mutex mutex_;
   std::condition_variable changed_;

@@ -22,7 +22,10 @@ class SlabSource final : public SampleSource {
     std::ranges::fill(surfaces, 0U);
     std::ranges::fill(samples.first(positions.size()),
                       own_->seeks_greatest() ? kNoValue : Sample{});
-    if (journey.gather()) own_->seeks_greatest() ? journey.complete() : journey.close();
+    const bool done =
+        journey.gather() && (own_->seeks_greatest() ? journey.complete() : journey.close());
+    // Nobody wants them any more, but they are numbers.
+    if (!done) std::ranges::fill(samples.first(positions.size()), Sample{});
     return {positions.size(), journey.taken()};
   }
 
@@ -62,16 +65,18 @@ class SlabSource final : public SampleSource {
     }
 
     /// The greatest values, exactly, in the slabs in which they were found.
-    void complete() {
+    bool complete() {
       for (int slab = 0; slab < slabs_; ++slab)
         if (!advance(slab, kComplete, [&](std::size_t ray) { return best_in_[ray] == slab; }))
-          return;
+          return false;
       for (std::size_t ray = 0; ray < best_in_.size(); ++ray)
         if (best_in_[ray] == kNone) rays_.samples[ray] = {};
+      return true;
     }
 
-    void close() {
+    bool close() {
       for (Sample& sample : rays_.samples.first(paths_.size())) sample = closed(sample);
+      return true;
     }
 
    private:

@@ -312,6 +312,12 @@ TEST(CommandLine, BypassNamesRoles) {
       "--bypass: \"workers\" is none of master, worker, compositor (did you mean \"worker\"?)");
 }
 
+TEST(CommandLine, AByPassedWorkerHasNoSlabs) {
+  EXPECT_EQ(refusal(kRender + Words{"--bypass", "worker", "--data", "slabs"}),
+            "--bypass: a by-passed worker sends no rays from slab to slab (leave out --bypass "
+            "worker, or --data slabs)");
+}
+
 TEST(CommandLine, DataLivesReplicatedOrInSlabs) {
   EXPECT_FALSE(options(kRender).slabs);
   EXPECT_FALSE(options(kRender + Words{"--data", "replicated"}).slabs);

@@ -91,6 +91,18 @@ TEST(VolumeSlices, AHeaderThatIsNotUnderstoodIsNotGuessed) {
   expect_slices(folder / "text.nrrd", false);
 }
 
+TEST(VolumeSlices, BooleansOfAMetaImageAreReadAsItsLibraryReadsThem) {
+  const TemporaryFolder folder;
+  const auto file = folder / "big.mha";
+  std::ofstream stream(file, std::ios::binary);
+  stream << "ObjectType = Image\nNDims = 3\nBinaryData = True\nBinaryDataByteOrderMSB = T\n"
+            "CompressedData = False\nDimSize = 4 3 5\nElementType = MET_SHORT\n"
+            "ElementDataFile = LOCAL\n";
+  for (int i = 0; i < 120; ++i) stream.put(char(i * 7));
+  stream.close();
+  expect_slices(file, false);
+}
+
 TEST(VolumeSlices, AFileThatGrewShorterIsAFailure) {
   const TemporaryFolder folder;
   const auto file = folder / "ramp_16x16x16_uint8.raw";

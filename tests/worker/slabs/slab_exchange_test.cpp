@@ -41,7 +41,8 @@ RayBatch batch_with(float red, std::size_t rays = 3) {
 /// The exchange of worker 0 of 5 workers with 2 slabs; a thread asks, the test answers.
 struct SlabExchangeTest : testing::Test {
   std::counting_semaphore<100> told{0};
-  SlabExchange exchange{0, 5, 2, [this] { told.release(); }};
+  std::counting_semaphore<> cores{1};
+  SlabExchange exchange{0, 5, 2, cores, [this] { told.release(); }};
   std::shared_ptr<const SlabLink> link;
 
   SlabExchangeTest() {
@@ -161,7 +162,8 @@ TEST(RayMessages, RaysComeThroughAsTheyWere) {
 
 struct RayPoolTest : testing::Test {
   std::counting_semaphore<100> told{0};
-  RayPool pool{2, false, [this] { told.release(); }};
+  std::counting_semaphore<> cores{1};
+  RayPool pool{2, false, cores, [this] { told.release(); }};
   RayPool::Done done() {
     told.acquire();
     auto all = pool.take_done();

@@ -53,7 +53,8 @@ TEST(SlabSource, RandomScenesAreEqualToTheBitOnEveryInstructionSet) {
       const RandomCase random = random_case(number);
       const int layers = layers_of(random.volume->info().geometry.size.z);
       const auto whole = commit_scene(random.scene, random.volume);
-      if (layers < 2 || half_step_in_slices(*whole) > kMostOverhang) continue;
+      if (layers < 2 || step_mm(*whole) > longest_slab_step_mm(random.volume->info().geometry))
+        continue;
       const auto expected =
           look(*make_ray_caster(whole, *random.scene.camera, random.scene.image.size), random.rays);
       for (int slabs = 2; slabs <= layers; ++slabs) {
@@ -121,6 +122,24 @@ TEST(SlabSource, AFineLookAlongAcrossAndFromInsideIsEqualToTheBit) {
   }
 }
 
+TEST(SlabSource, OfEqualGreatestValuesTheFirstIsTakenInSlabsToo) {
+  // Plateaus in each slab, and lone brighter voxels beside them.
+  const auto volume =
+      make_volume({.size = {20, 20, 40}}, VoxelType::kUInt8, [](int x, int y, int z) {
+        if ((x * 7 + y * 13 + z * 5) % 31 == 0) return 103.0;
+        return z % 8 < 3 || z > 36 ? 100.0 : 20.0;
+      });
+  Scene scene = scene_of_bumps(volume->info(), Mode::kMip, false, false);
+  scene.camera = Camera{.position = {9, 11, -60}, .target = {10, 10, 20}, .up = {0, 1, 0}};
+  std::mt19937 random(5);
+  std::uniform_real_distribution<float> share(0, 1);
+  std::vector<PixelPosition> rays(20000);
+  for (PixelPosition& ray : rays) ray = {157 * share(random), 123 * share(random)};
+  const auto expected =
+      look(*make_ray_caster(commit_scene(scene, volume), *scene.camera, scene.image.size), rays);
+  EXPECT_EQ(differing(expected, look(*slab_source_of(scene, cut(*volume, 5)), rays)), 0U);
+}
+
 /// Segments that all slabs cast at once, merged front to back: direct send, the way not taken.
 struct Merged {
   Picture samples;
@@ -173,7 +192,7 @@ TEST(SlabSource, SegmentsThatAreCastAtOnceAndMergedMakeAnotherPictureAndMoreWork
   std::printf("  rms %.4f/255, at most %.3f/255; samples %.2f times as many\n", apart.rms,
               apart.greatest, double(merged.taken) / double(counts.samples));
   EXPECT_GT(apart.greatest, 0.05);
-  EXPECT_GT(merged.taken, counts.samples * 5 / 4);
+  EXPECT_GT(merged.taken, counts.samples * 11 / 10);
 }
 
 TEST(SlabSource, RaysThatSeeNoFurtherAreNotSentOn) {
