@@ -159,7 +159,8 @@ struct SceneCommitted {
   std::uint32_t revision = 0;
   std::vector<std::string> features;
   std::string kernel;
-  /// Places that the scene may show, in the world, mm: the same from each worker with the same slab.
+  /// Places that the scene may show, in the world, mm: the same from each worker with the same
+  /// slab.
   std::vector<glm::dvec3> visible_points;
   GOLDTHREAD_MESSAGE(SceneCommitted, &SceneCommitted::revision, &SceneCommitted::features,
                      &SceneCommitted::kernel, &SceneCommitted::visible_points)

@@ -52,7 +52,7 @@ PixelRect quarter_of(const PixelRect& whole, int quarter);
 /// leaves of these trees are the tiles, numbered root by root.
 struct TileGrid {
   ImageSize image;
-  ImageSize tile;                 ///< of a root; multiples of the coarsest level's spacing
+  ImageSize tile;                      ///< of a root; multiples of the coarsest level's spacing
   std::vector<SplitRoot> splits = {};  ///< by growing root
   bool operator==(const TileGrid&) const = default;
   static constexpr auto fields() {

@@ -15,7 +15,8 @@ namespace {
 ViewState view() {
   ViewState view;
   view.grid = TileGrid::squares({100, 70}, 64);
-  for (std::uint32_t i = 0; i < view.grid.count(); ++i) view.tiles.push_back({{2}, 1e-3 * i, 0, {}});
+  for (std::uint32_t i = 0; i < view.grid.count(); ++i)
+    view.tiles.push_back({{2}, 1e-3 * i, 0, {}});
   return view;
 }
 
