@@ -124,6 +124,7 @@ class BalanceBench {
 
   double replayed_seconds(const std::vector<Pair>& pairs, int workers, Strategy strategy) {
     std::vector<double> seconds;
+    seconds.reserve(pairs.size());
     for (const Pair& pair : pairs)
       seconds.push_back(
           replay(pair.now, history_of(pair.last, pair.now.camera, points()), workers, strategy)
