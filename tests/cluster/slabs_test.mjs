@@ -77,8 +77,8 @@ if (how === 'loopback') {
   test('The head in four slabs is the head', { skip: existsSync(headVolume) ? false : 'no head is installed' }, () =>
     expectSame(headScene, '201x153', [], ['--data', 'slabs:4', '--threads', '1'], 6));
   const killed = async (slabs) => {
-    const args = (output) => ['render', scenes['surfaces in dvr'], '-o', inScratch(output), '--size', '240x180', '--error', '0.05',
-                              '--step', '0.004', '--threads', '1'];
+    const args = (output) => ['render', scenes['surfaces in dvr'], '-o', inScratch(output), '--size', '200x150', '--error', '0.1',
+                              '--step', '0.008', '--threads', '1'];
     const render = startRecoverable(6, [...args('killed.png'), '--data', slabs], inScratch('status'), { seconds: 150 });
     await render.until(() => /rendering: [0-7]?\d %/.test(render.stderr));
     process.kill(processOfRank(render, 3), 'SIGKILL');
