@@ -106,7 +106,7 @@ void Scheduler::put(int owner, TileId tile) {
   note_waiting(owner);
 }
 
-TileId Scheduler::take(int owner, std::deque<TileId>::const_iterator at) {
+TileId Scheduler::take(int owner, const std::deque<TileId>::const_iterator& at) {
   Queue& queue = queue_of(owner);
   const TileId tile = *at;
   queue.tiles.erase(at);

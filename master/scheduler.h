@@ -144,7 +144,7 @@ class Scheduler {
   /// Where `worker` takes its next tile from.
   int source_for(int worker) const;
   void put(int owner, TileId tile);
-  TileId take(int owner, std::deque<TileId>::const_iterator at);
+  TileId take(int owner, const std::deque<TileId>::const_iterator& at);
   void note_waiting(int owner);
   bool is_due(const Worker& taker, TileId tile, double waiting_us, int threads) const;
   double expected_us(TileId tile) const;

@@ -44,7 +44,7 @@ void ServeJob::run() {
     }
     act();
     tell_status();
-    load_.tell(cluster_, Clock::now(), [&](std::string json) { to_pages(Broadcast{json}); });
+    load_.tell(cluster_, Clock::now(), [&](const std::string& json) { to_pages(Broadcast{json}); });
   }
 }
 

@@ -132,6 +132,7 @@ std::vector<LinearFit> fit_steps(const CountedView& view) {
   std::vector<LinearFit> prices;
   for (const std::vector<CountedStep>& step : view.steps) {
     std::vector<TimedTerms> terms;
+    terms.reserve(step.size());
     for (const CountedStep& tile : step)
       terms.push_back({{tile.rays, tile.samples}, tile.thread_us});
     LinearFit price = fit_linear(terms);

@@ -47,6 +47,7 @@ SweepPoint point_of(int view, int megapixels, int tile_px, int workers, int mast
 void run(std::vector<SweepPoint>& points, const std::vector<RecordedView>& views,
          const ClusterModel& model, const SweepSettings& settings) {
   std::vector<SweepPoint*> order;
+  order.reserve(points.size());
   for (SweepPoint& point : points) order.push_back(&point);
   std::stable_sort(order.begin(), order.end(),
                    [](const SweepPoint* a, const SweepPoint* b) { return a->tiles > b->tiles; });

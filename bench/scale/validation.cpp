@@ -79,6 +79,7 @@ ValidationRow compare(const Trial& trial, int workers, const ClusterModel& model
   // The first has no history to go by.
   cluster.frame_us(trial.scene, trial.casting.stop);
   std::vector<double> measured;
+  measured.reserve(std::size_t(frames));
   for (int i = 0; i < frames; ++i)
     measured.push_back(cluster.frame_us(trial.scene, trial.casting.stop));
   ClusterShape shape;
@@ -98,7 +99,7 @@ Trial cast_trial(const Subject& subject, const Scene& scene) {
 }
 
 Trial paced_trial(const Scene& scene, const CostRecord& whole, double us) {
-  const auto paced = std::make_shared<const PacedSource>(whole, scene.image.size, us);
+  auto paced = std::make_shared<const PacedSource>(whole, scene.image.size, us);
   const CountedView counted = count_view(UnpacedSource(*paced), scene.image, kEveryPixel, 1);
   // What is counted are nanoseconds.
   const std::vector<LinearFit> prices(counted.steps.size(), LinearFit{0, 1e-3, 0});
@@ -106,7 +107,9 @@ Trial paced_trial(const Scene& scene, const CostRecord& whole, double us) {
           "a ray in each pixel, 3 steps",
           scene,
           kEveryPixel,
-          [paced](const auto&, const Camera&, ImageSize) { return paced; },
+          [paced](const auto&, const Camera&, ImageSize) -> std::shared_ptr<const SampleSource> {
+            return paced;
+          },
           work_of(cost_record(counted, prices), counted.grid)};
 }
 

@@ -20,6 +20,8 @@ bool is_socket(int descriptor) {
 }  // namespace
 
 /// In place of the C library's, for all libraries of this process.
+// The library's own names are reserved.
+// NOLINTNEXTLINE(readability-inconsistent-declaration-parameter-name)
 extern "C" ssize_t writev(int descriptor, const iovec* parts, int count) {
   const ssize_t written = syscall(SYS_writev, descriptor, parts, count);
   if (written >= 0) return written;
