@@ -7,7 +7,7 @@
 namespace goldthread {
 
 SlabCrew::SlabCrew(Topology topology, Rank own, const BeginSession& session,
-                   std::function<void()> notify)
+                   const std::function<void()>& notify)
     : topology_(topology),
       cores_(session.threads),
       exchange_(topology.worker_index(own), topology.workers, static_cast<int>(session.slabs),

@@ -19,7 +19,8 @@ namespace goldthread {
 class SlabCrew {
  public:
   /// Of the worker of rank `own`; `notify` is called when there is something to send.
-  SlabCrew(Topology topology, Rank own, const BeginSession& session, std::function<void()> notify);
+  SlabCrew(Topology topology, Rank own, const BeginSession& session,
+           const std::function<void()>& notify);
   /// What is asked for in older views is dropped. The source must not outlive this.
   std::shared_ptr<const SampleSource> begin_view(const BeginView& view,
                                                  std::shared_ptr<const CommittedScene> scene,
