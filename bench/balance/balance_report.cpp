@@ -9,6 +9,7 @@
 #include <nlohmann/json.hpp>
 
 #include "bench/error/gnuplot.h"
+#include "bench/error/json_parts.h"
 
 namespace goldthread::bench {
 namespace {
@@ -76,13 +77,6 @@ Plot plot_of(const BalanceReport& report, const std::pair<bool, int>& figure,
                     "set ylabel 'frames a second'\n" +
                     x_range(curves) + data_blocks(curves) +
                     on_both_terminals(name, plot_command(curves))};
-}
-
-Json json_of(const Goal& goal) {
-  return {{"what", goal.what},
-          {"goal", goal.goal},
-          {"reached", goal.reached},
-          {"met", goal.met ? Json(*goal.met) : Json()}};
 }
 
 }  // namespace
@@ -184,10 +178,7 @@ std::string balance_json(const BalanceReport& report) {
   const Json json{{"bench", "balance"},
                   {"version", report.version},
                   {"date", report.date},
-                  {"machine",
-                   {{"processor", report.machine.processor},
-                    {"cores", report.machine.cores},
-                    {"system", report.machine.system}}},
+                  {"machine", json_of(report.machine)},
                   {"scene", report.scene},
                   {"size", {report.size.width, report.size.height}},
                   {"quick", report.quick},

@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "bench/error/adaptive_json.h"
+#include "bench/error/json_parts.h"
 #include "bench/error/report.h"
 
 namespace goldthread::bench {
@@ -73,13 +74,6 @@ Json json_of(const PeerRow& row) {
   return json;
 }
 
-Json json_of(const Goal& goal) {
-  return {{"what", goal.what},
-          {"goal", goal.goal},
-          {"reached", goal.reached},
-          {"met", goal.met ? Json(*goal.met) : Json()}};
-}
-
 template <class Row>
 Json list_of(const std::vector<Row>& rows) {
   Json list = Json::array();
@@ -97,10 +91,7 @@ std::string report_json(const Report& report) {
   const Json json{{"bench", "error"},
                   {"version", report.version},
                   {"date", report.date},
-                  {"machine",
-                   {{"processor", report.machine.processor},
-                    {"cores", report.machine.cores},
-                    {"system", report.machine.system}}},
+                  {"machine", json_of(report.machine)},
                   {"instructionSet", report.instruction_set},
                   {"scene", report.scene},
                   {"volume", report.volume},

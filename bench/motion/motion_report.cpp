@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include "bench/error/gnuplot.h"
+#include "bench/error/json_parts.h"
 
 namespace goldthread::bench {
 namespace {
@@ -120,10 +121,7 @@ std::string motion_json(const MotionReport& report) {
   const Json json{{"bench", "motion"},
                   {"version", report.version},
                   {"date", report.date},
-                  {"machine",
-                   {{"processor", report.machine.processor},
-                    {"cores", report.machine.cores},
-                    {"system", report.machine.system}}},
+                  {"machine", json_of(report.machine)},
                   {"kernel", report.kernel},
                   {"scene", report.scene},
                   {"size", {report.size.width, report.size.height}},

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <nlohmann/json.hpp>
 
+#include "bench/error/json_parts.h"
 #include "bench/scale/scale_report.h"
 
 namespace goldthread::bench {
@@ -94,10 +95,7 @@ std::string scale_json(const ScaleReport& report) {
   const Json json{{"bench", "scale"},
                   {"version", report.version},
                   {"date", report.date},
-                  {"machine",
-                   {{"processor", report.machine.processor},
-                    {"cores", report.machine.cores},
-                    {"system", report.machine.system}}},
+                  {"machine", json_of(report.machine)},
                   {"kernel", report.kernel},
                   {"scene", report.scene},
                   {"size", {report.recorded_size.width, report.recorded_size.height}},

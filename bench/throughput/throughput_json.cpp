@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <nlohmann/json.hpp>
 
+#include "bench/error/json_parts.h"
 #include "bench/throughput/throughput_report.h"
 
 namespace goldthread::bench {
@@ -42,13 +43,6 @@ Json json_of(const BackEndRow& row) {
           {"samplesToZstd", json_of(row.all_zstd)}};
 }
 
-Json json_of(const Goal& goal) {
-  return {{"what", goal.what},
-          {"goal", goal.goal},
-          {"reached", goal.reached},
-          {"met", goal.met ? Json(*goal.met) : Json()}};
-}
-
 template <class Item>
 Json list_of(const std::vector<Item>& items) {
   Json list = Json::array();
@@ -62,10 +56,7 @@ std::string throughput_json(const ThroughputReport& report) {
   const Json json{{"bench", "throughput"},
                   {"version", report.version},
                   {"date", report.date},
-                  {"machine",
-                   {{"processor", report.machine.processor},
-                    {"cores", report.machine.cores},
-                    {"system", report.machine.system}}},
+                  {"machine", json_of(report.machine)},
                   {"scene", report.scene},
                   {"goals", list_of(throughput_goals(report))},
                   {"everythingBypassed", list_of(report.bypassed)},
