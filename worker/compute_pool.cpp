@@ -70,7 +70,7 @@ BusyLog ComputePool::busy_log(BusyLog::Clock::time_point now) const {
   const std::lock_guard lock(mutex_);
   BusyLog log = busy_;
   for (const auto& begin : running_)
-    if (begin) log.show(*begin, now);
+    if (begin) log.add(*begin, now);
   return log;
 }
 

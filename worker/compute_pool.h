@@ -48,8 +48,8 @@ class ComputePool {
   std::vector<Done> take_done();
   /// The view whose first quantum a thread has begun since the last call.
   std::optional<Epoch> take_begun();
-  /// Processor time that the threads have spent on quanta, finished or abandoned; and in the bins
-  /// since when others run, until `now`.
+  /// Processor time that the threads have spent on quanta, finished or abandoned, and how long the
+  /// running ones have run, until `now`.
   BusyLog busy_log(BusyLog::Clock::time_point now) const;
 
  private:

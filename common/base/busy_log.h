@@ -24,12 +24,6 @@ class BusyLog {
   void add(Clock::time_point begin, Clock::time_point end) {
     if (end <= begin) return;
     total_ += end - begin;
-    show(begin, end);
-  }
-
-  /// Into the bins alone: of what is not done yet.
-  void show(Clock::time_point begin, Clock::time_point end) {
-    if (end <= begin) return;
     const std::int64_t last = number_of(end - Clock::duration(1));
     advance(last);
     for (std::int64_t n = std::max(number_of(begin), newest_ - kBins); n <= last; ++n)
