@@ -87,18 +87,17 @@ void WorkerRole::on(BeginSession message) {
           "was given a session without ranks, or two");
   session_ = message;
   const auto wake = [this] { post_.wake(); };
+  topology_.compositors = static_cast<int>(message.compositors);
+  topology_.workers = post_.size() - 1 - topology_.compositors;
   if (message.slabs > 0) {
-    const Topology topology{static_cast<int>(message.compositors),
-                            post_.size() - 1 - static_cast<int>(message.compositors)};
-    require(std::cmp_less_equal(message.slabs, topology.workers),
+    require(std::cmp_less_equal(message.slabs, topology_.workers),
             "was given more slabs than workers");
-    slabs_ = std::make_unique<SlabCrew>(topology, post_.rank(), message, wake);
+    slabs_ = std::make_unique<SlabCrew>(topology_, post_.rank(), message, wake);
   }
   pool_ = std::make_unique<ComputePool>(message.tiles, message.interactive, wake, cast_tile_);
-  const Topology topology{static_cast<int>(session_.compositors), 1};
   links_.clear();
-  for (int i = 0; i < topology.compositors; ++i)
-    links_.emplace_back(topology.compositor(i), message.compression, kCoreNeed);
+  for (int i = 0; i < topology_.compositors; ++i)
+    links_.emplace_back(topology_.compositor(i), message.compression, kCoreNeed);
 }
 
 void WorkerRole::on(const LoadVolume& message) {
@@ -222,28 +221,25 @@ void WorkerRole::send_done() {
   if (!pool_) return;
   if (const auto epoch = pool_->take_begun()) post_.to_master(ViewTaken{*epoch});
   for (ComputePool::Done& done : pool_->take_done()) {
-    const int band =
-        band_index(view_->grid, done.samples.tile, static_cast<int>(session_.compositors));
-    const Topology topology{static_cast<int>(session_.compositors), 1};
+    const int band = band_index(view_->grid, done.samples.tile, topology_.compositors);
     Samples& samples = done.samples;
     samples.tag = links_.at(static_cast<std::size_t>(band))
                       .pack(codec_, samples.packed,
                             samples_layout(samples.count, view_->update == Update::kAll));
-    post_.to_compositor(topology.compositor(band), std::move(samples));
+    post_.to_compositor(topology_.compositor(band), std::move(samples));
     post_.to_master(done.report);
   }
 }
 
 void WorkerRole::probe_links() {
   for (std::size_t i = 0; i < links_.size(); ++i) {
-    const Topology topology{static_cast<int>(session_.compositors), 1};
     while (auto probe = links_[i].probe())
-      post_.to_compositor(topology.compositor(static_cast<int>(i)), std::move(*probe));
+      post_.to_compositor(topology_.compositor(static_cast<int>(i)), std::move(*probe));
   }
 }
 
 void WorkerRole::on(Rank from, const Receipt& message) {
-  const int index = Topology{static_cast<int>(session_.compositors), 1}.compositor_index(from);
+  const int index = topology_.compositor_index(from);
   require(index >= 0 && std::cmp_less(index, links_.size()), "was sent a receipt of nothing");
   links_[static_cast<std::size_t>(index)].received(message);
 }

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "common/codec/bulk_link.h"
+#include "common/protocol/topology.h"
 #include "common/transport/heartbeat.h"
 #include "common/transport/post.h"
 #include "worker/compute_pool.h"
@@ -70,6 +71,7 @@ class WorkerRole {
   HeartbeatSender heartbeat_;
   std::optional<Stop> stop_;
   BeginSession session_;
+  Topology topology_;  ///< as the session says
   std::atomic<float> load_fraction_{0};
   float told_fraction_ = 0;
   std::optional<std::future<Result<VolumeBlock>>> loading_;
