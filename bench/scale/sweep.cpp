@@ -10,7 +10,6 @@ namespace goldthread::bench {
 namespace {
 
 constexpr int kTile = 64;
-constexpr int kMegapixel = 1024 * 1024;
 constexpr int kWorkersPerCompositor = 8;
 constexpr int kChunksPerMaster = 16;
 constexpr std::uint32_t kMostTiles = 1U << 16;  ///< more are too many for any master
