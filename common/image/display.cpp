@@ -11,59 +11,57 @@
 namespace goldthread {
 namespace {
 
-/// As to_8_bits(), without a branch or a call, so that the compiler takes many at once.
-std::uint8_t rounded(float value) {
-  const float positive = value > 0 ? value : 0;  // what is not a number becomes 0
-  const float scaled = (positive < 1 ? positive : 1) * 255;
-  const int below = static_cast<int>(scaled);
-  // Exact: adding a half before cutting off would round some values below it upwards.
-  const bool up = scaled - static_cast<float>(below) >= 0.5f;
-  return static_cast<std::uint8_t>(below + (up ? 1 : 0));
+/// A pixel's four channels in one register of every x86-64 and ARMv8.
+using Lanes = float __attribute__((vector_size(16)));
+using Ints = std::int32_t __attribute__((vector_size(16)));
+
+/// To 0 … 1; what is not a number becomes 0.
+Lanes clamped(const float* pixel) {
+  constexpr Lanes kNone{}, kAll{1, 1, 1, 1};
+  Lanes value;
+  std::memcpy(&value, pixel, sizeof value);
+  const Lanes positive = value > kNone ? value : kNone;
+  return positive < kAll ? positive : kAll;
 }
 
-/// Pixels at a time: they stay in the nearest cache between rounding and packing.
-constexpr std::size_t kChunk = 64;
-
-void display(std::span<const float> rgba, std::uint8_t* rgb) {
-  const std::size_t pixels = rgba.size() / 4;
-  for (std::size_t first = 0; first < pixels; first += kChunk) {
-    const std::size_t count = std::min(kChunk, pixels - first);
-    std::array<std::uint8_t, 4 * kChunk> bytes;
-    for (std::size_t i = 0; i < 4 * count; ++i) bytes[i] = rounded(rgba[4 * first + i]);
-    std::uint8_t* out = rgb + 3 * first;
-    // Four bytes at a time: the last is that of the next pixel, which is written after it.
-    for (std::size_t i = 0; i + 1 < count; ++i) std::memcpy(out + 3 * i, &bytes[4 * i], 4);
-    std::memcpy(out + 3 * (count - 1), &bytes[4 * (count - 1)], 3);
+/// As to_8_bits(), of all channels of a pixel.
+struct Rounding {
+  Ints operator()(Lanes value) const {
+    const Lanes scaled = value * 255.0f;
+    const Ints below = __builtin_convertvector(scaled, Ints);
+    // Exact: adding a half before cutting off would round some values below it upwards. A
+    // comparison that holds is −1.
+    return below - (scaled - __builtin_convertvector(below, Lanes) >= 0.5f);
   }
-}
+};
 
 /// sRGB's curve and the rounding to 8 bits, of all floats from 0 to 1, by the thresholds between
 /// the 256 levels. They are found by asking the curve itself, so that the results are the same.
 class SrgbLevels {
  public:
   SrgbLevels() {
-    for (unsigned level = 1; level < thresholds_.size(); ++level)
-      thresholds_[level] = first_of(level);
+    for (unsigned level = 1; level < 256; ++level) thresholds_[level] = first_of(level);
+    thresholds_[256] = 2;  // beyond all
     unsigned level = 0;
     for (std::uint32_t i = 0; i < start_.size(); ++i) {
       const float low = std::bit_cast<float>(i << kDropped);
-      while (level < 255 && low >= thresholds_[level + 1]) ++level;
+      while (low >= thresholds_[level + 1]) ++level;
       start_[i] = static_cast<std::uint8_t>(level);
     }
   }
 
-  std::uint8_t of(float value) const {
-    if (!(value > 0)) return 0;
-    if (value >= 1) return 255;
-    unsigned level = start_[std::bit_cast<std::uint32_t>(value) >> kDropped];
-    while (level < 255 && value >= thresholds_[level + 1]) ++level;
-    return static_cast<std::uint8_t>(level);
-  }
+  Ints operator()(Lanes value) const { return Ints{of(value[0]), of(value[1]), of(value[2]), 0}; }
 
  private:
-  /// Positive floats are ordered as their bits are: exponent and some of the mantissa.
+  /// Positive floats are ordered as their bits are: exponent and some of the mantissa, so much that
+  /// there is no second threshold between one such place and the next.
   static constexpr unsigned kDropped = 16;
   static constexpr std::uint32_t kOne = std::bit_cast<std::uint32_t>(1.0f);
+
+  std::int32_t of(float value) const {
+    const unsigned level = start_[std::bit_cast<std::uint32_t>(value) >> kDropped];
+    return static_cast<std::int32_t>(level + (value >= thresholds_[level + 1] ? 1 : 0));
+  }
 
   /// The least float that is shown as `level`.
   static float first_of(unsigned level) {
@@ -78,24 +76,46 @@ class SrgbLevels {
     return std::bit_cast<float>(low);
   }
 
-  std::array<float, 256> thresholds_{};  ///< the first is not used
+  std::array<float, 257> thresholds_{};  ///< the first is not used
   std::array<std::uint8_t, (kOne >> kDropped) + 1> start_{};
 };
 
-void display_linear(std::span<const float> rgba, std::uint8_t* rgb) {
-  static const SrgbLevels levels;
-  for (std::size_t i = 0; i < rgba.size() / 4; ++i)
-    for (std::size_t c = 0; c < 3; ++c) rgb[3 * i + c] = levels.of(rgba[4 * i + c]);
+/// Pixels at a time: they stay in the nearest cache from level to byte.
+constexpr std::size_t kChunk = 16;
+
+/// The bytes of `count` pixels; `levels_of` gives a pixel's levels.
+template <typename Levels>
+void display(const float* rgba, std::size_t count, const Levels& levels_of, std::uint8_t* rgb) {
+  std::array<std::int32_t, 4 * kChunk> levels{};
+  for (std::size_t i = 0; i < count; ++i) {
+    const Ints pixel = levels_of(clamped(rgba + 4 * i));
+    std::memcpy(&levels[4 * i], &pixel, sizeof pixel);
+  }
+  std::array<std::uint8_t, 4 * kChunk> bytes;
+  for (std::size_t i = 0; i < bytes.size(); ++i) bytes[i] = static_cast<std::uint8_t>(levels[i]);
+  // Four bytes at a time: the last is that of the next pixel, which is written after it.
+  for (std::size_t i = 0; i + 1 < count; ++i) std::memcpy(rgb + 3 * i, &bytes[4 * i], 4);
+  std::memcpy(rgb + 3 * (count - 1), &bytes[4 * (count - 1)], 3);
+}
+
+template <typename Levels>
+void display_all(std::span<const float> rgba, const Levels& levels_of, std::uint8_t* rgb) {
+  const std::size_t pixels = rgba.size() / 4;
+  std::size_t first = 0;
+  for (; first + kChunk <= pixels; first += kChunk)
+    display(rgba.data() + 4 * first, kChunk, levels_of, rgb + 3 * first);
+  if (first < pixels) display(rgba.data() + 4 * first, pixels - first, levels_of, rgb + 3 * first);
 }
 
 }  // namespace
 
 void display_rgb8(std::span<const float> rgba, ColorSpace color_space,
                   std::span<std::uint8_t> rgb) {
+  static const SrgbLevels srgb;
   if (color_space == ColorSpace::kLinear)
-    display_linear(rgba, rgb.data());
+    display_all(rgba, srgb, rgb.data());
   else
-    display(rgba, rgb.data());
+    display_all(rgba, Rounding{}, rgb.data());
 }
 
 std::vector<std::uint8_t> display_rgb8(std::span<const float> rgba, ColorSpace color_space) {

@@ -84,5 +84,20 @@ TEST(Display, IsTheCurveExactlyForAnyFloat) {
   }
 }
 
+TEST(Display, OfManyPixelsIsThatOfEach) {
+  std::mt19937 random(3);
+  std::uniform_real_distribution<float> values(-0.5f, 1.5f);
+  for (std::size_t pixels = 1; pixels < 70; ++pixels) {
+    std::vector<float> rgba(4 * pixels);
+    for (float& value : rgba) value = values(random);
+    for (const ColorSpace space : {ColorSpace::kDisplay, ColorSpace::kLinear}) {
+      std::vector<std::uint8_t> each;
+      for (std::size_t i = 0; i < pixels; ++i)
+        for (std::size_t c = 0; c < 3; ++c) each.push_back(shown(rgba[4 * i + c], space));
+      ASSERT_EQ(display_rgb8(rgba, space), each) << pixels;
+    }
+  }
+}
+
 }  // namespace
 }  // namespace goldthread
