@@ -302,24 +302,32 @@ void Cluster::refine_further() {
 void Cluster::cancel_view() { scheduler_.cancel(); }
 
 void Cluster::supply(int worker) {
-  while (give(worker)) {
-  }
+  RenderTiles message;
+  while (add_quantum(worker, message)) continue;
+  if (!message.tiles.empty()) post_.to_worker(topology_.worker(worker), std::move(message));
 }
 
 void Cluster::supply_all() {
+  std::vector<RenderTiles> messages(static_cast<std::size_t>(topology_.workers));
   for (bool any = true; any;) {
     any = false;
-    for (int w = 0; w < topology_.workers; ++w) any = give(w) || any;
+    for (int w = 0; w < topology_.workers; ++w)
+      any = add_quantum(w, messages[static_cast<std::size_t>(w)]) || any;
+  }
+  for (int w = 0; w < topology_.workers; ++w) {
+    RenderTiles& message = messages[static_cast<std::size_t>(w)];
+    if (!message.tiles.empty()) post_.to_worker(topology_.worker(w), std::move(message));
   }
 }
 
-bool Cluster::give(int worker) {
+bool Cluster::add_quantum(int worker, RenderTiles& message) {
   const auto quantum = scheduler_.next(worker);
   if (!quantum) return false;
-  RenderTiles message{{{view_.epoch, quantum->tile, quantum->from, quantum->to}}};
-  while (const auto tile = scheduler_.join(worker))
-    message.tiles.push_back({view_.epoch, *tile, quantum->from, quantum->to});
-  post_.to_worker(topology_.worker(worker), std::move(message));
+  const auto add = [&](TileId tile) {
+    message.tiles.push_back({view_.epoch, tile, quantum->from, quantum->to});
+  };
+  add(quantum->tile);
+  while (const auto tile = scheduler_.join(worker)) add(*tile);
   return true;
 }
 
@@ -329,13 +337,20 @@ void Cluster::on(Rank, ViewTaken message) {
   view_.taken = Clock::now() - view_.begin;
 }
 
-void Cluster::on(Rank from, TileDone message) {
+void Cluster::on(Rank from, const TilesDone& message) {
+  bool any = false;
+  for (const TileDone& done : message.tiles) any = note_done(from, done) || any;
+  if (!any) return;
+  supply(topology_.worker_index(from));
+  if (scheduler_.finished()) finish_step();
+}
+
+bool Cluster::note_done(Rank from, const TileDone& message) {
   const int worker = topology_.worker_index(from);
-  if (message.epoch != view_.epoch || message.tile.value >= view_.grid.count()) return;
+  if (message.epoch != view_.epoch || message.tile.value >= view_.grid.count()) return false;
   const Finished finished =
       scheduler_.done(worker, message.tile, message.to, message.quality.squared_error);
-  if (finished == Finished::kNot) return;
-  supply(worker);
+  if (finished == Finished::kNot) return false;
   ViewState::Tile& tile = view_.tiles[message.tile.value];
   // A newcomer has cast the earlier steps again: that is not what this one costs.
   if (message.to == Step{1} || tile.worker == from) {
@@ -355,7 +370,7 @@ void Cluster::on(Rank from, TileDone message) {
   view_.worker_seconds[static_cast<std::size_t>(worker)] += 1e-6 * message.cost_us;
   tile.quality = message.quality;
   ranks_[static_cast<std::size_t>(from.value)].tiles += 1;
-  if (scheduler_.finished()) finish_step();
+  return true;
 }
 
 void Cluster::finish_step() {

@@ -189,7 +189,9 @@ class Cluster {
   void on(Rank from, VolumeMapped message);
   void on(Rank from, SceneCommitted message);
   void on(Rank from, ViewTaken message);
-  void on(Rank from, TileDone message);
+  void on(Rank from, const TilesDone& message);
+  /// Whether the scheduler had asked for it.
+  bool note_done(Rank from, const TileDone& done);
   void on(Rank from, BandReady message);
   void on(Rank from, Counters message);
   void on(Rank from, RankFailed message);
@@ -221,7 +223,8 @@ class Cluster {
   /// Handles one message if there is one; false if there was none.
   bool handle_one();
   /// One quantum; false if there is no room or no work.
-  bool give(int worker);
+  bool add_quantum(int worker, RenderTiles& message);
+  /// All that there is room for, in one message.
   void supply(int worker);
   /// In turns, so that no worker's spare is dearer than what another begins with.
   void supply_all();

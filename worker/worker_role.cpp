@@ -220,6 +220,7 @@ void WorkerRole::send_done() {
   if (slabs_) slabs_->send(post_);
   if (!pool_) return;
   if (const auto epoch = pool_->take_begun()) post_.to_master(ViewTaken{*epoch});
+  TilesDone reports;
   for (ComputePool::Done& done : pool_->take_done()) {
     const int band = band_index(view_->grid, done.samples.tile, topology_.compositors);
     Samples& samples = done.samples;
@@ -227,8 +228,9 @@ void WorkerRole::send_done() {
                       .pack(codec_, samples.packed,
                             samples_layout(samples.count, view_->update == Update::kAll));
     post_.to_compositor(topology_.compositor(band), std::move(samples));
-    post_.to_master(done.report);
+    reports.tiles.push_back(done.report);
   }
+  if (!reports.tiles.empty()) post_.to_master(std::move(reports));
 }
 
 void WorkerRole::probe_links() {

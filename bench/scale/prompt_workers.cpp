@@ -43,13 +43,13 @@ PromptWorkers::Answered PromptWorkers::answer() {
       for (const RenderTile& tile : quantum->tiles) {
         // Errors and costs that differ: the order of tiles is not the order of their numbers.
         const std::uint32_t mixed = tile.tile.value * 2654435761U >> 16;
-        say(worker, TileDone{tile.epoch,
-                             tile.tile,
-                             tile.to,
-                             500 + mixed % 1000,
-                             4096,
-                             100000,
-                             {1e-3 * (1 + mixed % 97), 1}});
+        say(worker, TilesDone{{{tile.epoch,
+                                tile.tile,
+                                tile.to,
+                                500 + mixed % 1000,
+                                4096,
+                                100000,
+                                {1e-3 * (1 + mixed % 97), 1}}}});
         ++answered.quanta;
       }
     }

@@ -56,7 +56,7 @@ struct Master {
 
 struct MessageBytes {
   double quantum = double(encode(ToWorker(RenderTiles{{{}}})).size());
-  double done = double(encode(ToMaster(TileDone{})).size());
+  double done = double(encode(ToMaster(TilesDone{{{}}})).size());
   double view = double(encode(ToWorker(BeginView{})).size());
   double samples = double(encode(ToCompositor(Samples{})).size());  ///< without the samples
   double small = double(encode(ToMaster(BandReady{})).size());

@@ -25,7 +25,7 @@
 
 namespace goldthread {
 
-constexpr std::uint32_t kProtocolVersion = 3;
+constexpr std::uint32_t kProtocolVersion = 4;
 
 enum class Role : std::uint8_t { kMaster, kCompositor, kWorker };
 
@@ -188,8 +188,15 @@ struct TileDone {
   std::uint64_t rays = 0;
   std::uint64_t samples = 0;
   TileQuality quality;
-  GOLDTHREAD_MESSAGE(TileDone, &TileDone::epoch, &TileDone::tile, &TileDone::to, &TileDone::cost_us,
-                     &TileDone::rays, &TileDone::samples, &TileDone::quality)
+  static constexpr auto fields() {
+    return std::tuple{&TileDone::epoch, &TileDone::tile,    &TileDone::to,     &TileDone::cost_us,
+                      &TileDone::rays,  &TileDone::samples, &TileDone::quality};
+  }
+};
+/// All that a worker has finished since it last looked: of quick tiles several.
+struct TilesDone {
+  std::vector<TileDone> tiles;
+  GOLDTHREAD_MESSAGE(TilesDone, &TilesDone::tiles)
 };
 /// Each tile of a compositor's band has taken `step` or more.
 struct BandReady {
@@ -308,7 +315,7 @@ struct Audience {
 };
 
 using ToMaster = std::variant<Hello, Heartbeat, LoadProgress, VolumeLoaded, VoxelCounts,
-                              VolumeMapped, SceneCommitted, ViewTaken, TileDone, BandReady,
+                              VolumeMapped, SceneCommitted, ViewTaken, TilesDone, BandReady,
                               BandPicture, Counters, RankFailed, GatewayOpened, LinkProbe,
                               ViewerCamera, ViewerEdit, ViewerSize, ViewerDisplay, Audience>;
 
@@ -390,7 +397,8 @@ struct RenderTile {
     return std::tuple{&RenderTile::epoch, &RenderTile::tile, &RenderTile::from, &RenderTile::to};
   }
 };
-/// One quantum of work: a tile, or several cheap ones, in this order. Each is answered for itself.
+/// Quanta of work, in this order: all that the worker is to have for now. Each tile is reported
+/// when it is done.
 struct RenderTiles {
   std::vector<RenderTile> tiles;
   GOLDTHREAD_MESSAGE(RenderTiles, &RenderTiles::tiles)

@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "common/transport/mpi_transport.h"
 
+#include <semaphore.h>
 #include <sys/prctl.h>
 
 #include <algorithm>
-#include <condition_variable>
 #include <cstdlib>
+#include <ctime>
 #include <deque>
 #include <limits>
-#include <mutex>
 #include <string>
 #include <thread>
 #include <vector>
@@ -21,15 +21,44 @@ namespace goldthread {
 namespace {
 
 constexpr int kTag = 1;
-/// The polling interval grows from the first to the second while nothing comes: short enough for
-/// interaction, long enough to leave the cores to the ranks that compute.
-constexpr std::chrono::microseconds kShortestSleep{20};
+/// The polling interval grows from the first to the second while nothing comes and goes: short
+/// enough for interaction, long enough to leave the cores to the ranks that compute.
+constexpr std::chrono::microseconds kShortestSleep{80};
 constexpr std::chrono::microseconds kLongestSleep{1000};
-/// While transfers are under way and one has ended within so long, the next will soon: to sleep
+/// Shorter messages go out at once, and need no more of this rank: Open MPI's least eager limit.
+constexpr std::size_t kLongMessage = 4096;
+/// While long messages are under way and one has ended within so long, the next will soon: to sleep
 /// would leave the network idle. Others may have the core meanwhile.
 constexpr std::chrono::microseconds kFlow{30};
+/// Then while they are under way.
+constexpr std::chrono::microseconds kTransferSleep{20};
 /// A sleep that misses its end by the kernel's default 50 µs would double the latency.
 constexpr unsigned long kTimerSlackNs = 1000;
+
+/// Ends a thread's sleep. A condition variable takes three system calls for a sleep that nothing
+/// ends, this one: a rank that waits for work does little else.
+class Alarm {
+ public:
+  Alarm() { sem_init(&rung_, 0, 0); }
+  ~Alarm() { sem_destroy(&rung_); }
+  Alarm(const Alarm&) = delete;
+  Alarm& operator=(const Alarm&) = delete;
+
+  void ring() { sem_post(&rung_); }
+  /// Whether it rang within that time, or since the last sleep.
+  bool sleep(std::chrono::microseconds at_most) {
+    const auto end = std::chrono::steady_clock::now() + at_most;
+    const auto since_epoch = end.time_since_epoch();
+    const auto seconds = std::chrono::duration_cast<std::chrono::seconds>(since_epoch);
+    const timespec until{seconds.count(), std::chrono::nanoseconds(since_epoch - seconds).count()};
+    if (sem_clockwait(&rung_, CLOCK_MONOTONIC, &until) != 0) return false;
+    while (sem_trywait(&rung_) == 0) continue;
+    return true;
+  }
+
+ private:
+  sem_t rung_;
+};
 
 }  // namespace
 
@@ -37,6 +66,9 @@ class MpiTransport::Impl {
  public:
   Impl() {
     outlive_lost_peers();
+    // Open MPI would give the core away at each look at the network that finds nothing, where there
+    // are more ranks than cores: here ranks sleep.
+    setenv("OMPI_MCA_mpi_yield_when_idle", "0", 0);
     int provided = 0;
     check_mpi(MPI_Init_thread(nullptr, nullptr, MPI_THREAD_FUNNELED, &provided), "MPI_Init_thread");
     MPI_Comm_set_errhandler(MPI_COMM_WORLD, MPI_ERRORS_RETURN);
@@ -66,8 +98,10 @@ class MpiTransport::Impl {
     check_mpi(MPI_Isend(message.data(), static_cast<int>(message.size()), MPI_BYTE, to.value, kTag,
                         MPI_COMM_WORLD, &request),
               "MPI_Isend");
+    long_sends_ += is_long(message) ? 1 : 0;
     sending_.push_back(std::move(message));
     requests_.push_back(request);
+    sleep_ = kShortestSleep;  // an answer may come soon
   }
 
   std::optional<Envelope> receive() {
@@ -92,37 +126,29 @@ class MpiTransport::Impl {
 
   void wait(std::chrono::microseconds at_most) {
     if (!to_self_.empty()) return;
-    // While a transfer is under way only polling moves it on.
-    const bool busy = !sending_.empty() || open_receives_ > 0;
+    // While such a transfer is under way only polling moves it on.
+    const bool busy = long_sends_ > 0 || open_receives_ > 0;
     if (busy) {
       // Not to be woken: what the others have meanwhile is more than one thing.
       if (std::chrono::steady_clock::now() - last_end_ < kFlow)
         std::this_thread::yield();
       else
-        std::this_thread::sleep_for(std::min(at_most, kShortestSleep));
+        std::this_thread::sleep_for(std::min(at_most, kTransferSleep));
       return;
     }
-    std::unique_lock lock(mutex_);
-    if (woken_changed_.wait_for(lock, std::min(at_most, sleep_), [&] { return woken_; }))
+    if (alarm_.sleep(std::min(at_most, sleep_)))
       sleep_ = kShortestSleep;
     else
-      sleep_ = std::min(sleep_ * 5 / 4, kLongestSleep);
-    woken_ = false;
+      sleep_ = std::min(sleep_ * 3 / 2, kLongestSleep);
   }
 
-  void wake() {
-    {
-      const std::lock_guard lock(mutex_);
-      woken_ = true;
-    }
-    woken_changed_.notify_one();
-  }
+  void wake() { alarm_.ring(); }
 
   void flush(std::chrono::milliseconds at_most) {
     const auto end = std::chrono::steady_clock::now() + at_most;
     while (!sending_.empty() && std::chrono::steady_clock::now() < end) {
       finish_sends();
-      if (!sending_.empty()) std::this_thread::sleep_for(kShortestSleep);
+      if (!sending_.empty()) std::this_thread::sleep_for(kTransferSleep);
     }
   }
 
@@ -131,6 +157,8 @@ class MpiTransport::Impl {
     Buffer message;
     MPI_Request request;
   };
+
+  static bool is_long(const Buffer& message) { return message.size() >= kLongMessage; }
 
   /// All at once: asking for each by itself looks at the network as often as there are messages.
   void finish_sends() {
@@ -144,7 +172,10 @@ class MpiTransport::Impl {
     last_end_ = std::chrono::steady_clock::now();
     std::size_t kept = 0;
     for (std::size_t i = 0; i < requests_.size(); ++i) {
-      if (requests_[i] == MPI_REQUEST_NULL) continue;
+      if (requests_[i] == MPI_REQUEST_NULL) {
+        long_sends_ -= is_long(sending_[i]) ? 1 : 0;
+        continue;
+      }
       if (kept != i) {
         requests_[kept] = requests_[i];
         sending_[kept] = std::move(sending_[i]);
@@ -194,16 +225,14 @@ class MpiTransport::Impl {
   std::vector<Buffer> sending_;  ///< the request of each:
   std::vector<MPI_Request> requests_;
   std::vector<int> done_;
+  int long_sends_ = 0;
   std::vector<std::deque<Transfer>> receiving_;  // by source
   int open_receives_ = 0;
   std::size_t next_source_ = 0;
   std::deque<Envelope> to_self_;
   std::chrono::steady_clock::time_point last_end_;  ///< of a transfer
   std::chrono::microseconds sleep_ = kShortestSleep;
-
-  std::mutex mutex_;
-  std::condition_variable woken_changed_;
-  bool woken_ = false;
+  Alarm alarm_;
 };
 
 int ranks_of_mpi_job() {

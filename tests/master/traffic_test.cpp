@@ -11,7 +11,7 @@ namespace {
 using std::chrono::milliseconds;
 
 std::map<std::string, MessageCount> sent(std::uint64_t samples, std::uint64_t done) {
-  return {{"Samples", {"Samples", 1, samples}}, {"TileDone", {"TileDone", 2, done}}};
+  return {{"Samples", {"Samples", 1, samples}}, {"TilesDone", {"TilesDone", 2, done}}};
 }
 TrafficMeter::Clock::time_point at(int ms) {
   return TrafficMeter::Clock::time_point(milliseconds(ms));
@@ -20,7 +20,7 @@ TrafficMeter::Clock::time_point at(int ms) {
 TEST(Traffic, IsTheSumOfAllRanks) {
   std::vector<RankState> ranks(3);
   ranks[0].sent = {{"Present", 1, 10}};
-  ranks[1].sent = {{"Samples", 3, 100}, {"TileDone", 4, 7}};
+  ranks[1].sent = {{"Samples", 3, 100}, {"TilesDone", 4, 7}};
   ranks[2].sent = {{"Samples", 5, 1000}};
   const auto traffic = traffic_of(ranks);
   ASSERT_EQ(traffic.size(), 3U);
@@ -32,7 +32,7 @@ TEST(Traffic, IsTheSumOfAllRanks) {
 TEST(TrafficMeter, RatesAreThoseOfTheLastSecondAndTheMostBytesComeFirst) {
   TrafficMeter meter;
   const auto first = meter.sample(at(1000), sent(100, 500));
-  EXPECT_EQ(first[0].total.kind, "TileDone");
+  EXPECT_EQ(first[0].total.kind, "TilesDone");
   EXPECT_EQ(first[0].bytes_per_s, 0) << "nothing is known yet";
   EXPECT_DOUBLE_EQ(meter.sample(at(1250), sent(200, 500))[1].bytes_per_s, 400);
   for (int ms = 1500; ms < 4000; ms += 250) meter.sample(at(ms), sent(200, 500));

@@ -37,7 +37,7 @@ export function loadOf(now: number, moving: boolean): object {
   });
   return {
     type: 'load', bin: kBinMs, ranks,
-    bytes: [traffic('Samples', 24e6), traffic('EncodedBand', 1.4e6), traffic('TileDone', 61e3), traffic('RenderTile', 21e3)],
+    bytes: [traffic('Samples', 24e6), traffic('EncodedBand', 1.4e6), traffic('TilesDone', 61e3), traffic('RenderTiles', 21e3)],
   };
 }
 

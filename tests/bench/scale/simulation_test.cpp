@@ -73,7 +73,7 @@ TEST(Simulation, OneWorkerTakesTheSumOfTilesAndMessages) {
   const double view = double(encode(ToWorker(BeginView{})).size());
   const double quantum = double(encode(ToWorker(RenderTiles{{{}}})).size());
   const double samples = 1000 + double(encode(ToCompositor(Samples{})).size());
-  const double done = double(encode(ToMaster(TileDone{})).size());
+  const double done = double(encode(ToMaster(TilesDone{{{}}})).size());
   const double ready = double(encode(ToMaster(BandReady{})).size());
   const LinkCosts& link = model.link;
   // The master queues three tiles, tells the worker the view, and sends the first tile.

@@ -84,10 +84,10 @@ TEST(Message, IsLittleEndianWithoutPadding) {
 TEST(Message, CarriesNanInfinityAndMinusZeroAsTheirBits) {
   for (const double value : {std::nan("0x123"), -std::numeric_limits<double>::infinity(), -0.0,
                              std::numeric_limits<double>::denorm_min()}) {
-    const TileDone sent{{7}, {3}, {2}, 100, 20, 10, {value, -value}};
+    const TilesDone sent{{{{7}, {3}, {2}, 100, 20, 10, {value, -value}}}};
     const auto decoded = decode<ToMaster>(encode(ToMaster(sent)));
     ASSERT_TRUE(decoded);
-    EXPECT_TRUE(same(std::get<TileDone>(*decoded), sent)) << value;
+    EXPECT_TRUE(same(std::get<TilesDone>(*decoded), sent)) << value;
   }
 }
 
