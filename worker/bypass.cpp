@@ -43,33 +43,62 @@ std::vector<SampleOffset> changed_places(ImageSize tile, Step from, Step to,
   return changed;
 }
 
-/// What a message carries: clear samples, then the places of them that are told.
-struct Payload {
-  std::uint32_t count = 0;
-  std::vector<SampleOffset> places;
+/// What a message carries: clear samples, then the places of them that are told. Memory comes back
+/// when a message is gone, as it was, and is sent again: to clear it would take longer than to send
+/// it.
+class Payload : public std::enable_shared_from_this<Payload> {
+ public:
+  Payload(std::size_t count, std::vector<SampleOffset> places)
+      : count_(count), places_(std::move(places)) {}
 
-  Buffer packed() const {
-    const std::size_t colors = count * sizeof(Sample), told = places.size() * sizeof(SampleOffset);
+  std::size_t count() const { return count_; }
+
+  Buffer packed() {
+    return Buffer::lent(take(), [payload = shared_from_this()](Buffer used) {
+      const std::lock_guard lock(payload->mutex_);
+      payload->free_.push_back(std::move(used));
+    });
+  }
+
+ private:
+  /// What came back last is still in the cache.
+  Buffer take() {
+    const std::lock_guard lock(mutex_);
+    if (free_.empty()) return filled();
+    Buffer last = std::move(free_.back());
+    free_.pop_back();
+    return last;
+  }
+  Buffer filled() const {
+    const std::size_t colors = count_ * sizeof(Sample),
+                      told = places_.size() * sizeof(SampleOffset);
     Buffer bytes(colors + told);
     if (colors > 0) std::memset(bytes.data(), 0, colors);
-    if (told > 0) std::memcpy(bytes.data() + colors, places.data(), told);
+    if (told > 0) std::memcpy(bytes.data() + colors, places_.data(), told);
     return bytes;
   }
+
+  std::size_t count_;
+  std::vector<SampleOffset> places_;
+  std::mutex mutex_;
+  std::vector<Buffer> free_;
 };
 
-Payload payload_of(const CastView& view, const RenderTile& quantum) {
+std::shared_ptr<Payload> payload_of(const CastView& view, const RenderTile& quantum) {
   const PixelRect rect = view.grid.rect(quantum.tile);
   if (view.update != Update::kAll)
-    return {static_cast<std::uint32_t>(places_of(rect, view.update, view.part).size()), {}};
+    return std::make_shared<Payload>(places_of(rect, view.update, view.part).size(),
+                                     std::vector<SampleOffset>());
   auto places =
       changed_places({rect.width, rect.height}, quantum.from, quantum.to, view.refinement);
-  return {static_cast<std::uint32_t>(places.size()), std::move(places)};
+  const std::size_t count = places.size();
+  return std::make_shared<Payload>(count, std::move(places));
 }
 
 /// Shared by a worker's threads.
 class PayloadStore {
  public:
-  std::shared_ptr<const Payload> of(const CastView& view, const RenderTile& quantum) {
+  std::shared_ptr<Payload> of(const CastView& view, const RenderTile& quantum) {
     const PixelRect rect = view.grid.rect(quantum.tile);
     const Key key{rect.width,
                   rect.height,
@@ -80,7 +109,7 @@ class PayloadStore {
                   view.refinement.most_samples};
     const std::lock_guard lock(mutex_);
     auto& payload = payloads_[key];
-    if (!payload) payload = std::make_shared<const Payload>(payload_of(view, quantum));
+    if (!payload) payload = payload_of(view, quantum);
     return payload;
   }
 
@@ -88,7 +117,7 @@ class PayloadStore {
   using Key =
       std::tuple<std::int32_t, std::int32_t, Update, std::uint32_t, Step, Step, std::uint32_t>;
   std::mutex mutex_;
-  std::map<Key, std::shared_ptr<const Payload>> payloads_;
+  std::map<Key, std::shared_ptr<Payload>> payloads_;
 };
 
 }  // namespace
@@ -105,9 +134,10 @@ TileCaster bypassed_tiles() {
     if (stale()) return {};
     const auto payload = store->of(view, quantum);
     RefinedTile result;
-    result.samples = {quantum.epoch, quantum.tile,   quantum.from,
-                      quantum.to,    payload->count, payload->packed()};
-    result.counts.rays = payload->count;
+    const auto count = static_cast<std::uint32_t>(payload->count());
+    result.samples = {quantum.epoch, quantum.tile, quantum.from,
+                      quantum.to,    count,        payload->packed()};
+    result.counts.rays = count;
     result.tile = std::move(tile);
     return result;
   };

@@ -5,6 +5,7 @@
 
 #include <cstddef>
 #include <cstring>
+#include <functional>
 #include <memory>
 #include <new>
 #include <span>
@@ -22,6 +23,17 @@ class Buffer {
   explicit Buffer(std::size_t size) : Buffer(size, kHeadroom) {}
   /// For receiving: no headroom, so that what was aligned to 16 within the message stays so.
   static Buffer for_receiving(std::size_t size) { return Buffer(size, 0); }
+  /// The same window, in memory that is given back when it is not used any more: as it is then, as
+  /// the window that it was. From any thread.
+  static Buffer lent(Buffer own, const std::function<void(Buffer)>& give_back) {
+    Buffer result;
+    result.begin_ = own.begin_;
+    result.size_ = own.size_;
+    std::byte* const memory = own.memory_.get();
+    result.memory_ = {memory, [give_back, kept = std::make_shared<Buffer>(std::move(own))](
+                                  std::byte*) { give_back(std::move(*kept)); }};
+    return result;
+  }
   /// What was moved from is empty.
   Buffer(Buffer&& other) noexcept
       : memory_(std::move(other.memory_)),
@@ -68,11 +80,12 @@ class Buffer {
   };
   Buffer(std::size_t size, std::size_t headroom)
       : memory_(static_cast<std::byte*>(
-            ::operator new[](headroom + size + 1, std::align_val_t{kAlignment}))),
+                    ::operator new[](headroom + size + 1, std::align_val_t{kAlignment})),
+                Free()),
         begin_(headroom),
         size_(size) {}
 
-  std::unique_ptr<std::byte[], Free> memory_;
+  std::shared_ptr<std::byte[]> memory_;
   std::size_t begin_ = 0;
   std::size_t size_ = 0;
 };

@@ -96,5 +96,23 @@ TEST(BypassedTiles, NothingIsAnsweredOfAViewThatIsOver) {
                                 [] { return true; }));
 }
 
+TEST(BypassedTiles, SendTheSameMemoryAgainOnceItIsFree) {
+  const CastView view = view_of(Update::kWhole);
+  const TileCaster stub = bypassed_tiles();
+  const RenderTile quantum{{7}, {0}, kNoStep, {1}};
+  const auto packed = [&] {
+    return std::move(stub(view, quantum, nullptr, kWanted)->samples.packed);
+  };
+  const std::byte* first = nullptr;
+  {
+    const Buffer one = packed(), other = packed();
+    first = other.data();
+    EXPECT_NE(one.data(), other.data());
+  }
+  const Buffer again = packed(), more = packed();
+  EXPECT_TRUE(again.data() == first || more.data() == first);
+  for (const std::byte each : again.bytes()) ASSERT_EQ(each, std::byte{0});
+}
+
 }  // namespace
 }  // namespace goldthread

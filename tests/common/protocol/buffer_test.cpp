@@ -81,5 +81,26 @@ TEST(Buffer, ThatWasMovedFromIsEmpty) {
   expect_header_then_count(assigned, 0, 7);
 }
 
+TEST(Buffer, ThatIsLentComesBackAsItWasOnceItIsNotUsed) {
+  std::vector<Buffer> back;
+  const auto give_back = [&](Buffer buffer) { back.push_back(std::move(buffer)); };
+  Buffer own(3);
+  const std::byte* const memory = own.data();
+  for (std::size_t i = 0; i < 3; ++i) own.data()[i] = std::byte(i);
+  {
+    Buffer lent = Buffer::lent(std::move(own), give_back);
+    EXPECT_EQ(lent.data(), memory);
+    const std::byte header[]{std::byte{9}, std::byte{9}};
+    lent.prepend(header);
+    lent.truncate(3);
+    Buffer moved = std::move(lent);
+    EXPECT_TRUE(back.empty());
+  }
+  ASSERT_EQ(back.size(), 1u);
+  EXPECT_EQ(back[0].data(), memory);
+  ASSERT_EQ(back[0].size(), 3u);
+  for (std::size_t i = 0; i < 3; ++i) EXPECT_EQ(back[0].data()[i], std::byte(i));
+}
+
 }  // namespace
 }  // namespace goldthread
