@@ -23,7 +23,7 @@ namespace {
 constexpr int kTag = 1;
 /// The polling interval grows from the first to the second while nothing comes and goes: short
 /// enough for interaction, long enough to leave the cores to the ranks that compute.
-constexpr std::chrono::microseconds kShortestSleep{80};
+constexpr std::chrono::microseconds kShortestSleep{100};
 constexpr std::chrono::microseconds kLongestSleep{1000};
 /// Shorter messages go out at once, and need no more of this rank: Open MPI's least eager limit.
 constexpr std::size_t kLongMessage = 4096;
@@ -139,7 +139,7 @@ class MpiTransport::Impl {
     if (alarm_.sleep(std::min(at_most, sleep_)))
       sleep_ = kShortestSleep;
     else
-      sleep_ = std::min(sleep_ * 3 / 2, kLongestSleep);
+      sleep_ = std::min(sleep_ * 2, kLongestSleep);
   }
 
   void wake() { alarm_.ring(); }
