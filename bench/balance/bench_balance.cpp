@@ -28,6 +28,9 @@ constexpr double kTurnDegrees = 2;
 constexpr double kPredictedTurnDegrees = 5;
 constexpr double kDolly = 0.92;
 constexpr double kPan = 0.06;  ///< of the distance
+/// Pictures for print are larger than frames for the eye, and take longer.
+constexpr ImageSize kLargeRender{2048, 2048};
+constexpr int kLargeRenderRepeats = 3;
 
 std::unique_ptr<Session> session_of(const Subject& subject, int workers,
                                     Strategy strategy = {.spare_us = kSpareUs}) {
@@ -173,20 +176,32 @@ class BalanceBench {
       Update update;
       Sampling sampling;
       double distance;
+      ImageSize size;
     };
-    const std::vector<Picture> pictures{
-        {"a frame in motion", Update::kWhole, Sampling::kAdaptive, 1},
-        {"a frame in motion, far away", Update::kWhole, Sampling::kAdaptive, 4},
-        {"render, every pixel", Update::kAll, Sampling::kEveryPixel, 1},
-        {"render, adaptive", Update::kAll, Sampling::kAdaptive, 1}};
+    std::vector<Picture> pictures{
+        {"a frame in motion", Update::kWhole, Sampling::kAdaptive, 1, image_},
+        {"a frame in motion, far away", Update::kWhole, Sampling::kAdaptive, 4, image_},
+        {"render, every pixel", Update::kAll, Sampling::kEveryPixel, 1, image_},
+        {"render, adaptive", Update::kAll, Sampling::kAdaptive, 1, image_}};
+    if (!settings_.quick) {
+      const auto large = [](const char* how) {
+        return fmt::format("render, {}, {}×{}", how, kLargeRender.width, kLargeRender.height);
+      };
+      pictures.push_back(
+          {large("every pixel"), Update::kAll, Sampling::kEveryPixel, 1, kLargeRender});
+      pictures.push_back({large("adaptive"), Update::kAll, Sampling::kAdaptive, 1, kLargeRender});
+    }
     for (const Picture& picture : pictures) {
       settings_.progress("imbalance", double(report_.imbalances.size()) / double(pictures.size()));
       const StopRule rule{picture.sampling};
       const ViewCut cut =
-          goldthread::cut_of({}, image_, picture.sampling, picture.update, kBalanced);
+          goldthread::cut_of({}, picture.size, picture.sampling, picture.update, kBalanced);
+      const int repeats = picture.size == image_
+                              ? settings_.repeats
+                              : std::min(settings_.repeats, kLargeRenderRepeats);
       std::vector<double> measured, replayed;
       CastFrame last;
-      for (int frame = 0; frame <= settings_.repeats; ++frame) {
+      for (int frame = 0; frame <= repeats; ++frame) {
         ViewRequest request{cut.grid, refinement_of(rule), picture.update, 0, cut.split};
         const Camera at = camera(picture.distance, frame);
         measured.push_back(cast_frame(*four, at, request, rule).imbalance);
