@@ -74,8 +74,12 @@ class Simulation {
   /// The master above tells a sub-master, which hears of it at `at`.
   void open_part_at(int master, double at);
   void open_part(Master& master, double at);
-  /// Whether there was a quantum for the worker. It leaves at `now`, which moves on.
-  bool give(Master& master, int worker, double& now);
+  /// Quanta for a worker, which go out in one message.
+  using Order = std::vector<std::vector<std::uint32_t>>;
+  /// Whether there was another quantum for the worker; `now` moves on.
+  bool add_quantum(Master& master, int worker, Order& order, double& now);
+  /// What is in the order leaves at `now`, which moves on.
+  void send(Master& master, int worker, const Order& order, double& now);
   void compute(int worker, std::span<const std::uint32_t> tiles, double at);
   void on_tile_done(const Event& event);
   void on_samples(const Event& event);
@@ -143,14 +147,22 @@ Simulation::Simulation(const FrameWork& now, const FrameWork& before, const Clus
       std::count_if(band_tiles_.begin(), band_tiles_.end(), [](std::size_t n) { return n > 0; }));
 }
 
-bool Simulation::give(Master& master, int worker, double& now) {
+bool Simulation::add_quantum(Master& master, int worker, Order& order, double& now) {
   const auto tiles = master.scheduling.next(worker);
   if (tiles.empty()) return false;
-  const double bytes = bytes_.quantum * double(tiles.size());
-  now += master.costs.supply_us + send_us(bytes);
-  ++master.server.messages;
-  compute(master.first_worker + worker, tiles, now + transit(bytes) + receive_us(bytes));
+  now += master.costs.supply_us;
+  order.emplace_back(tiles.begin(), tiles.end());
   return true;
+}
+
+void Simulation::send(Master& master, int worker, const Order& order, double& now) {
+  if (order.empty()) return;
+  double bytes = 0;
+  for (const auto& tiles : order) bytes += bytes_.quantum * double(tiles.size());
+  now += send_us(bytes);
+  ++master.server.messages;
+  for (const auto& tiles : order)
+    compute(master.first_worker + worker, tiles, now + transit(bytes) + receive_us(bytes));
 }
 
 /// The quanta of a worker come in the order in which they are sent, so each takes the thread that
@@ -217,7 +229,11 @@ void Simulation::open_part(Master& master, double at) {
     master.server.messages += std::uint64_t(master.workers);
   }
   master.scheduling.open();
-  master.scheduling.supply_all([&](int worker) { return give(master, worker, now); });
+  std::vector<Order> orders(std::size_t(master.workers));
+  master.scheduling.supply_all(
+      [&](int worker) { return add_quantum(master, worker, orders[std::size_t(worker)], now); });
+  for (int worker = 0; worker < master.workers; ++worker)
+    send(master, worker, orders[std::size_t(worker)], now);
   master.server.end(begin, now);
 }
 
@@ -230,8 +246,9 @@ void Simulation::on_tile_done(const Event& event) {
   ++master.server.messages;
   const int worker = event.from - master.first_worker;
   master.scheduling.done(worker, event.tile, work_.steps[event.step][event.tile]);
-  while (give(master, worker, now)) {
-  }
+  Order order;
+  while (add_quantum(master, worker, order, now)) continue;
+  send(master, worker, order, now);
   const bool finished = master.scheduling.finished();
   if (finished && two_levels()) {
     now += master.costs.supply_us + send_us(bytes_.small);
