@@ -84,6 +84,7 @@ test('A session over three hosts answers pages, and each host holds the volume o
 
   session.signal('SIGTERM');
   const result = await session.ended;
+  assert.equal(result.status, 0, result.stderr);
   assert.deepEqual(errorLines(result), []);
   assert.deepEqual(await leftOver(), []);
 });
