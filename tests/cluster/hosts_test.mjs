@@ -3,7 +3,9 @@
 // says why, where there can be none.
 
 import assert from 'node:assert/strict';
+import { execFileSync } from 'node:child_process';
 import { readFileSync } from 'node:fs';
+import { open } from 'node:fs/promises';
 import test, { after } from 'node:test';
 import { Hosts, whyNoHosts } from './support/hosts.mjs';
 import { errorLines, inScratch, leftOver, run } from './support/program.mjs';
@@ -98,6 +100,25 @@ async function startLong() {
   }
   throw new Error('every render is done before it is half done');
 }
+
+test('A host that is cut off after its work is missed before MPI ends, which would wait for it', async () => {
+  const report = inScratch('report.pipe'), picture = inScratch('done.png');
+  execFileSync('mkfifo', [report]);
+  const options = ['--size', '64x48'];
+  const render = hosts.startRanks(kRanks, ['render', scene, '-o', picture, '--report', report, '--threads', '1', ...options],
+                                  { seconds: 60 });
+  // All is done when the master begins to write the report; it goes on when that is read.
+  const reader = await open(report, 'r');
+  hosts.cut(2);
+  assert.equal(JSON.parse(await reader.readFile('utf8')).ranks.length, kRanks);
+  await reader.close();
+  const result = await render.ended;
+  assert.equal(result.status, 0, result.stderr);
+  assert.deepEqual(errorLines(result), []);
+  assert.ok(readPng(picture).rgb.equals((await alone(options)).rgb));
+  assert.deepEqual(await leftOver(), []);
+  hosts.restore(2);
+});
 
 const ways = {
   'is lost': (i) => hosts.kill(i),
