@@ -4,9 +4,11 @@
 
 import assert from 'node:assert/strict';
 import { execFileSync } from 'node:child_process';
+import { once } from 'node:events';
 import { readFileSync } from 'node:fs';
-import { open } from 'node:fs/promises';
+import { readFile } from 'node:fs/promises';
 import test, { after } from 'node:test';
+import { setTimeout } from 'node:timers/promises';
 import { Hosts, whyNoHosts } from './support/hosts.mjs';
 import { errorLines, inScratch, leftOver, run } from './support/program.mjs';
 import { lit, sceneOf, surfaces, writeJson, writeNrrd } from './support/data.mjs';
@@ -105,19 +107,21 @@ test('A host that is cut off after its work is missed before MPI ends, which wou
   const report = inScratch('report.pipe'), picture = inScratch('done.png');
   execFileSync('mkfifo', [report]);
   const options = ['--size', '64x48'];
+  // No daemon may tell of it first.
   const render = hosts.startRanks(kRanks, ['render', scene, '-o', picture, '--report', report, '--threads', '1', ...options],
-                                  { seconds: 60 });
-  // All is done when the master begins to write the report; it goes on when that is read.
-  const reader = await open(report, 'r');
+                                  { seconds: 100, env: { OMPI_MCA_oob_tcp_keepalive_time: '600' } });
+  const exit = once(render.child, 'exit');
+  // Soon after the picture the master begins to write the report, and goes on when somebody reads it.
+  await render.until(() => render.stderr.includes(`${picture}: 64×48`));
+  await setTimeout(2000);
   hosts.cut(2);
-  assert.equal(JSON.parse(await reader.readFile('utf8')).ranks.length, kRanks);
-  await reader.close();
-  const result = await render.ended;
-  assert.equal(result.status, 0, result.stderr);
-  assert.deepEqual(errorLines(result), []);
+  assert.equal(JSON.parse(await readFile(report, 'utf8')).ranks.length, kRanks);
+  const [status] = await Promise.race([exit, render.ended.then(({ status }) => [status])]);
+  assert.equal(status, 0, render.stderr);
+  assert.deepEqual(errorLines(render), []);
   assert.ok(readPng(picture).rgb.equals((await alone(options)).rgb));
-  assert.deepEqual(await leftOver(), []);
   hosts.restore(2);
+  assert.deepEqual(await leftOver(), []);
 });
 
 const ways = {
