@@ -501,8 +501,24 @@ bool Cluster::counters_complete() const {
                      [](const auto& r) { return r.counted || r.lost; });
 }
 
+void Cluster::call_roll(std::chrono::milliseconds patience) {
+  const auto end = Clock::now() + patience;
+  request_counters();
+  while (!counters_complete() && Clock::now() < end) {
+    auto message = post_.receive<ToMaster>();
+    if (!message) {
+      post_.wait(kIdleWait);
+      continue;
+    }
+    auto* const counters = std::get_if<Counters>(&message->second);
+    // An answer with activity is to an earlier question.
+    if (counters != nullptr && !counters->activity) on(message->first, std::move(*counters));
+  }
+  for (RankState& rank : ranks_) rank.lost = rank.lost || !rank.counted;
+}
+
 bool Cluster::stop() {
-  const bool lost = liveness_.any_lost();
+  const bool lost = std::any_of(ranks_.begin(), ranks_.end(), [](const auto& r) { return r.lost; });
   for (int c = 0; c < topology_.compositors; ++c) {
     post_.to_compositor(topology_.compositor(c), Stop{lost});
   }

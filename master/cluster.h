@@ -175,6 +175,10 @@ class Cluster {
   /// Whether the volume is cut into slabs.
   bool has_slabs() const { return slabs_ > 0; }
 
+  /// Finds out who is still there, now that the work is done: whoever does not answer within
+  /// `patience` is lost. What else comes meanwhile is dropped. MPI's end waits for every rank, for
+  /// ever for one that was cut off and has not been silent long enough to be missed.
+  void call_roll(std::chrono::milliseconds patience);
   /// Ends the job on every other rank. True if none was lost.
   bool stop();
 
@@ -214,7 +218,7 @@ class Cluster {
   void send_to_workers(const Message& message) {
     for (int w = 0; w < topology_.workers; ++w) {
       const Rank rank = topology_.worker(w);
-      if (!liveness_.is_lost(rank)) post_.to_worker(rank, message);
+      if (!ranks_[static_cast<std::size_t>(rank.value)].lost) post_.to_worker(rank, message);
     }
   }
   void check_interrupted() const;

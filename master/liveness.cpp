@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "master/liveness.h"
 
-#include <algorithm>
-
 namespace goldthread {
 
 void Liveness::watch(int count, Time now) {
@@ -23,15 +21,6 @@ std::vector<Rank> Liveness::newly_lost(Time now, std::chrono::milliseconds silen
     lost.push_back({static_cast<std::int32_t>(i)});
   }
   return lost;
-}
-
-bool Liveness::is_lost(Rank rank) const {
-  const auto i = static_cast<std::size_t>(rank.value);
-  return i < ranks_.size() && ranks_[i].lost;
-}
-
-bool Liveness::any_lost() const {
-  return std::any_of(ranks_.begin(), ranks_.end(), [](const Watched& rank) { return rank.lost; });
 }
 
 }  // namespace goldthread

@@ -20,8 +20,6 @@ class Liveness {
   void heard(Rank rank, Time now);
   /// The ranks that became lost since the last call: silent for longer than `silence`.
   std::vector<Rank> newly_lost(Time now, std::chrono::milliseconds silence);
-  bool is_lost(Rank rank) const;
-  bool any_lost() const;
 
  private:
   struct Watched {

@@ -11,6 +11,12 @@
 
 namespace {
 
+/// Of a connection: it was closed, or TCP has waited for an answer in vain.
+bool means_lost(int error) {
+  return error == EPIPE || error == ECONNRESET || error == ETIMEDOUT || error == EHOSTUNREACH ||
+         error == ENETUNREACH;
+}
+
 bool is_socket(int descriptor) {
   int type = 0;
   socklen_t size = sizeof type;
@@ -26,8 +32,7 @@ extern "C" ssize_t writev(int descriptor, const iovec* parts, int count) {
   const ssize_t written = syscall(SYS_writev, descriptor, parts, count);
   if (written >= 0) return written;
   const int error = errno;
-  const bool lost = error == EPIPE || error == ECONNRESET;
-  errno = lost && is_socket(descriptor) ? EAGAIN : error;
+  errno = means_lost(error) && is_socket(descriptor) ? EAGAIN : error;
   return written;
 }
 

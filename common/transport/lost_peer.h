@@ -2,8 +2,9 @@
 #pragma once
 // What lets a rank outlive a peer that it writes to over TCP. Open MPI's TCP writes end the process
 // twice over: by SIGPIPE, and, that ignored, by trying again for ever after EPIPE. The reading side
-// of a lost connection copes. So a write that finds the peer gone says "not now" (EAGAIN), and Open
-// MPI leaves it to the reading side to notice.
+// of a lost connection copes. So a write that finds the peer gone, or out of reach for so long that
+// TCP has given it up, says "not now" (EAGAIN), and Open MPI leaves it to the reading side to
+// notice.
 
 namespace goldthread {
 

@@ -12,6 +12,7 @@
 #include <thread>
 #include <vector>
 
+#include "common/transport/heartbeat.h"
 #include "common/transport/loopback.h"
 #include "common/transport/mpi_transport.h"
 #include "compositor/compositor_role.h"
@@ -60,6 +61,7 @@ RoleEnd run_master(Transport& transport, Topology topology, const Options& optio
   } catch (const std::exception& error) {
     end.failure = {"goldthread", error.what(), "please report this", ExitStatus::kClusterFailed};
   }
+  if (!end.failure) cluster.call_roll(kSilence);
   end.all_ranks_there = cluster.stop();
   return end;
 }
