@@ -16,6 +16,9 @@ constexpr Carrier kCarriers[] = {Carrier::kSharedMemory, Carrier::kTcp, Carrier:
 constexpr ImageSize kBackEndSize{1024, 1024};
 constexpr int kBackEndRepeats = 21, kQuickBackEndRepeats = 5;
 constexpr int kSmallTile = 16;
+/// A virtual machine's cores may be neighbours at one time and far apart at another, with six times
+/// as long for a copy.
+constexpr int kRounds = 3, kQuickRounds = 1;
 
 std::vector<int> sides(bool quick) {
   return quick ? std::vector{256, 1024} : std::vector{128, 256, 512, 1024, 2048};
@@ -84,12 +87,17 @@ class Measurements {
   }
 
  private:
-  /// MPI alone before and after, so that what else the machine does strikes both alike.
   FramesRow row(const RanksSetup& setup, bool with_stream) const {
-    FramesRow row{setup, {}, {}};
-    if (with_stream) row.stream = starter_.stream(setup);
+    if (!with_stream) return {setup, starter_.frames(setup), {}, {}};
+    std::vector<FramesRow> rounds;
+    for (int i = 0; i < (settings_.quick ? kQuickRounds : kRounds); ++i)
+      rounds.push_back(round(setup));
+    return middle_of(std::move(rounds));
+  }
+  /// MPI alone before and after, so that what else the machine does strikes both alike.
+  FramesRow round(const RanksSetup& setup) const {
+    FramesRow row{setup, {}, starter_.stream(setup), {}};
     row.frames = starter_.frames(setup);
-    if (!with_stream) return row;
     const StreamResult after = starter_.stream(setup);
     row.stream->seconds.insert(row.stream->seconds.end(), after.seconds.begin(),
                                after.seconds.end());

@@ -25,6 +25,7 @@ Json json_of(const FramesRow& row) {
   if (row.stream) {
     json["mpiAloneBytesPerSecond"] = row.stream->bytes_per_second();
     json["stream"] = Json::parse(stream_json(*row.stream));
+    json["shares"] = row.shares;
   }
   return json;
 }

@@ -17,6 +17,7 @@ struct FramesRow {
   RanksSetup setup;
   FramesResult frames;
   std::optional<StreamResult> stream;  ///< MPI alone, before and after
+  std::vector<double> shares;          ///< of all rounds, ascending: this is the middle one
 
   double frames_per_second() const;
   double lossless_per_second() const;
@@ -25,6 +26,9 @@ struct FramesRow {
   /// Of what MPI alone carries; nothing where that was not measured.
   std::optional<double> share_of_stream() const;
 };
+
+/// The one of these rounds, at least one, whose share is the middle one.
+FramesRow middle_of(std::vector<FramesRow> rounds);
 
 struct ThroughputReport {
   std::string version;

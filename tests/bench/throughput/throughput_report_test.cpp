@@ -62,11 +62,25 @@ TEST(ThroughputReport, TheFirstFigureStandsBesideMpiAlone) {
   ASSERT_EQ(sections.size(), 5u);
   EXPECT_THAT(sections[1].table.rows,
               ElementsAre(ElementsAre("MPI, shared memory", "512×512", "50.0", "50.0 … 50.0",
-                                      "3200", "50.0", "100", "0.500"),
+                                      "3200", "50.0", "100", "0.500", "–"),
                           ElementsAre("MPI, shared memory", "1024×1024", "50.0", "50.0 … 50.0",
-                                      "12800", "50.0", "60.0", "0.833"),
+                                      "12800", "50.0", "60.0", "0.833", "–"),
                           ElementsAre("one process", "1024×1024", "100", "100 … 100", "25600",
-                                      "100", "–", "–")));
+                                      "100", "–", "–", "–")));
+}
+
+TEST(ThroughputReport, OfSeveralRoundsTheOneWithTheMiddleShareIsTold) {
+  std::vector<FramesRow> rounds;
+  for (const double stream_seconds : {0.01, 0.02, 0.004}) {
+    rounds.push_back(row(Carrier::kTcp, 1024, 1, 0.02, 64));
+    rounds.back().stream = StreamResult{1e6, {stream_seconds}};
+  }
+  const FramesRow middle = middle_of(rounds);
+  EXPECT_THAT(middle.stream->seconds, ElementsAre(0.01));
+  EXPECT_THAT(middle.shares, ElementsAre(0.2, 0.5, 1.0));
+  ThroughputReport report;
+  report.bypassed = {middle};
+  EXPECT_EQ(throughput_sections(report)[1].table.rows[0].back(), "0.200 … 1.00");
 }
 
 TEST(ThroughputReport, TheOtherFiguresAreAboutOneRole) {
