@@ -226,7 +226,7 @@ class Cluster {
   void lose(Rank rank);
   /// Handles one message if there is one; false if there was none.
   bool handle_one();
-  /// One quantum; false if there is no room or no work.
+  /// Appends one quantum; false if there is no room or no work.
   bool add_quantum(int worker, RenderTiles& message);
   /// All that there is room for, in one message.
   void supply(int worker);

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// The words for roles that users and scripts see.
+// The words for roles and ranks that users and scripts see.
+
+#include <string>
 
 #include "common/protocol/messages.h"
 
@@ -16,6 +18,10 @@ constexpr const char* role_name(Role role) {
       return "worker";
   }
   return "";
+}
+
+inline std::string rank_name(Rank rank, const std::string& host) {
+  return "rank " + std::to_string(rank.value) + (host.empty() ? "" : " on " + host);
 }
 
 }  // namespace goldthread

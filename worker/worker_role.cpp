@@ -220,17 +220,20 @@ void WorkerRole::send_done() {
   if (slabs_) slabs_->send(post_);
   if (!pool_) return;
   if (const auto epoch = pool_->take_begun()) post_.to_master(ViewTaken{*epoch});
+  auto all_done = pool_->take_done();
+  if (all_done.empty()) return;
+  // First of all: the next tiles should not wait until these are packed.
   TilesDone reports;
-  for (ComputePool::Done& done : pool_->take_done()) {
+  for (const ComputePool::Done& done : all_done) reports.tiles.push_back(done.report);
+  post_.to_master(std::move(reports));
+  for (ComputePool::Done& done : all_done) {
     const int band = band_index(view_->grid, done.samples.tile, topology_.compositors);
     Samples& samples = done.samples;
     samples.tag = links_.at(static_cast<std::size_t>(band))
                       .pack(codec_, samples.packed,
                             samples_layout(samples.count, view_->update == Update::kAll));
     post_.to_compositor(topology_.compositor(band), std::move(samples));
-    reports.tiles.push_back(done.report);
   }
-  if (!reports.tiles.empty()) post_.to_master(std::move(reports));
 }
 
 void WorkerRole::probe_links() {

@@ -39,8 +39,8 @@ PromptWorkers::Answered PromptWorkers::answer() {
     if (std::holds_alternative<LoadVolume>(*message))
       say(worker, VolumeLoaded{volume_, whole_slab(volume_.geometry.size.z), {}});
     if (std::holds_alternative<MapVolume>(*message)) say(worker, VolumeMapped{});
-    if (const auto* quantum = std::get_if<RenderTiles>(&*message)) {
-      for (const RenderTile& tile : quantum->tiles) {
+    if (const auto* order = std::get_if<RenderTiles>(&*message)) {
+      for (const RenderTile& tile : order->tiles) {
         // Errors and costs that differ: the order of tiles is not the order of their numbers.
         const std::uint32_t mixed = tile.tile.value * 2654435761U >> 16;
         say(worker, TilesDone{{{tile.epoch,

@@ -55,7 +55,8 @@ struct Master {
 };
 
 struct MessageBytes {
-  double quantum = double(encode(ToWorker(RenderTiles{{{}}})).size());
+  double order = double(encode(ToWorker(RenderTiles{})).size());  ///< without tiles
+  double tile = double(encode(ToWorker(RenderTiles{{{}}})).size()) - order;
   double done = double(encode(ToMaster(TilesDone{{{}}})).size());
   double view = double(encode(ToWorker(BeginView{})).size());
   double samples = double(encode(ToCompositor(Samples{})).size());  ///< without the samples
@@ -157,8 +158,8 @@ bool Simulation::add_quantum(Master& master, int worker, Order& order, double& n
 
 void Simulation::send(Master& master, int worker, const Order& order, double& now) {
   if (order.empty()) return;
-  double bytes = 0;
-  for (const auto& tiles : order) bytes += bytes_.quantum * double(tiles.size());
+  double bytes = bytes_.order;
+  for (const auto& tiles : order) bytes += bytes_.tile * double(tiles.size());
   now += send_us(bytes);
   ++master.server.messages;
   for (const auto& tiles : order)

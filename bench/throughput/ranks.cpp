@@ -14,15 +14,22 @@ namespace {
 constexpr std::chrono::seconds kPatience{120};
 
 /// As launch/run has it: any user may start it anywhere, and it is silent.
-std::vector<std::string> mpirun(Carrier carrier, int ranks, bool spinning) {
+std::vector<std::string> mpirun(Carrier carrier, int ranks) {
   const char* const btl = carrier == Carrier::kTcp ? "self,tcp" : "self,vader";
   return {"env",
-          // Ranks that spin need it where cores are few.
-          std::string("OMPI_MCA_mpi_yield_when_idle=") + (spinning ? "1" : "0"),
-          "OMPI_ALLOW_RUN_AS_ROOT=1", "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1", "OMPI_MCA_pml=ob1",
-          std::string("OMPI_MCA_btl=") + btl, "OMPI_MCA_btl_tcp_if_include=lo",
-          "OMPI_MCA_btl_vader_single_copy_mechanism=none", "HWLOC_HIDE_ERRORS=2", "mpirun",
-          "--oversubscribe", "--bind-to", "none", "-n", std::to_string(ranks)};
+          "OMPI_ALLOW_RUN_AS_ROOT=1",
+          "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1",
+          "OMPI_MCA_pml=ob1",
+          std::string("OMPI_MCA_btl=") + btl,
+          "OMPI_MCA_btl_tcp_if_include=lo",
+          "OMPI_MCA_btl_vader_single_copy_mechanism=none",
+          "HWLOC_HIDE_ERRORS=2",
+          "mpirun",
+          "--oversubscribe",
+          "--bind-to",
+          "none",
+          "-n",
+          std::to_string(ranks)};
 }
 
 template <class Value>
@@ -50,7 +57,7 @@ std::vector<std::string> command_of(const RanksSetup& setup, const std::string& 
                                     const std::filesystem::path& folder, const std::string& scene,
                                     bool quick) {
   std::vector<std::string> words;
-  if (is_mpi(setup.carrier)) words = mpirun(setup.carrier, 2 + setup.workers, subject == "stream");
+  if (is_mpi(setup.carrier)) words = mpirun(setup.carrier, 2 + setup.workers);
   words.insert(words.end(), {program.string(), "bench", subject});
   if (!scene.empty()) words.push_back(scene);
   const auto add = [&](const char* option, const std::string& value) {

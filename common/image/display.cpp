@@ -111,11 +111,12 @@ void display_all(std::span<const float> rgba, const Levels& levels_of, std::uint
 
 void display_rgb8(std::span<const float> rgba, ColorSpace color_space,
                   std::span<std::uint8_t> rgb) {
-  static const SrgbLevels srgb;
-  if (color_space == ColorSpace::kLinear)
+  if (color_space == ColorSpace::kLinear) {
+    static const SrgbLevels srgb;
     display_all(rgba, srgb, rgb.data());
-  else
+  } else {
     display_all(rgba, Rounding{}, rgb.data());
+  }
 }
 
 std::vector<std::uint8_t> display_rgb8(std::span<const float> rgba, ColorSpace color_space) {

@@ -5,7 +5,6 @@
 
 #include <cstddef>
 #include <cstring>
-#include <functional>
 #include <memory>
 #include <new>
 #include <span>
@@ -25,13 +24,19 @@ class Buffer {
   static Buffer for_receiving(std::size_t size) { return Buffer(size, 0); }
   /// The same window, in memory that is given back when it is not used any more: as it is then, as
   /// the window that it was. From any thread.
-  static Buffer lent(Buffer own, const std::function<void(Buffer)>& give_back) {
+  template <class GiveBack>
+  static Buffer lent(Buffer own, GiveBack give_back) {
+    struct Loan {
+      Buffer own;
+      GiveBack give_back;
+      ~Loan() { give_back(std::move(own)); }
+    };
     Buffer result;
     result.begin_ = own.begin_;
     result.size_ = own.size_;
     std::byte* const memory = own.memory_.get();
-    result.memory_ = {memory, [give_back, kept = std::make_shared<Buffer>(std::move(own))](
-                                  std::byte*) { give_back(std::move(*kept)); }};
+    result.memory_ = {memory,
+                      Free{std::shared_ptr<void>(new Loan{std::move(own), std::move(give_back)})}};
     return result;
   }
   /// What was moved from is empty.
@@ -74,18 +79,21 @@ class Buffer {
 
  private:
   struct Free {
-    void operator()(std::byte* memory) const {
-      ::operator delete[](memory, std::align_val_t{kAlignment});
+    std::shared_ptr<void> loan;  ///< whose the memory is, if it is not the buffer's own
+    void operator()(std::byte* memory) {
+      if (loan)
+        loan.reset();
+      else
+        ::operator delete[](memory, std::align_val_t{kAlignment});
     }
   };
   Buffer(std::size_t size, std::size_t headroom)
       : memory_(static_cast<std::byte*>(
-                    ::operator new[](headroom + size + 1, std::align_val_t{kAlignment})),
-                Free()),
+            ::operator new[](headroom + size + 1, std::align_val_t{kAlignment}))),
         begin_(headroom),
         size_(size) {}
 
-  std::shared_ptr<std::byte[]> memory_;
+  std::unique_ptr<std::byte[], Free> memory_;
   std::size_t begin_ = 0;
   std::size_t size_ = 0;
 };

@@ -25,13 +25,15 @@ constexpr int kTag = 1;
 /// enough for interaction, long enough to leave the cores to the ranks that compute.
 constexpr std::chrono::microseconds kShortestSleep{100};
 constexpr std::chrono::microseconds kLongestSleep{1000};
-/// Shorter messages go out at once, and need no more of this rank: Open MPI's least eager limit.
-constexpr std::size_t kLongMessage = 4096;
+/// Shorter messages, as a rule, go out at once and need no more of this rank: Open MPI's least
+/// eager limit, its header taken off.
+constexpr std::size_t kLongMessage = 4096 - 128;
 /// While long messages are under way and one has ended within so long, the next will soon: to sleep
 /// would leave the network idle. Others may have the core meanwhile.
 constexpr std::chrono::microseconds kFlow{30};
-/// Then while they are under way.
+/// Then so long, until it has been quiet: what is sent to a rank that is gone never ends.
 constexpr std::chrono::microseconds kTransferSleep{20};
+constexpr std::chrono::milliseconds kQuiet{100};
 /// A sleep that misses its end by the kernel's default 50 µs would double the latency.
 constexpr unsigned long kTimerSlackNs = 1000;
 
@@ -98,7 +100,10 @@ class MpiTransport::Impl {
     check_mpi(MPI_Isend(message.data(), static_cast<int>(message.size()), MPI_BYTE, to.value, kTag,
                         MPI_COMM_WORLD, &request),
               "MPI_Isend");
-    long_sends_ += is_long(message) ? 1 : 0;
+    if (is_long(message)) {
+      ++long_sends_;
+      last_move_ = std::chrono::steady_clock::now();
+    }
     sending_.push_back(std::move(message));
     requests_.push_back(request);
     sleep_ = kShortestSleep;  // an answer may come soon
@@ -128,9 +133,10 @@ class MpiTransport::Impl {
     if (!to_self_.empty()) return;
     // While such a transfer is under way only polling moves it on.
     const bool busy = long_sends_ > 0 || open_receives_ > 0;
-    if (busy) {
+    const auto quiet = std::chrono::steady_clock::now() - last_move_;
+    if (busy && quiet < kQuiet) {
       // Not to be woken: what the others have meanwhile is more than one thing.
-      if (std::chrono::steady_clock::now() - last_end_ < kFlow)
+      if (quiet < kFlow)
         std::this_thread::yield();
       else
         std::this_thread::sleep_for(std::min(at_most, kTransferSleep));
@@ -169,7 +175,7 @@ class MpiTransport::Impl {
                            done_.data(), MPI_STATUSES_IGNORE),
               "MPI_Testsome");
     if (count == 0) return;
-    last_end_ = std::chrono::steady_clock::now();
+    last_move_ = std::chrono::steady_clock::now();
     std::size_t kept = 0;
     for (std::size_t i = 0; i < requests_.size(); ++i) {
       if (requests_[i] == MPI_REQUEST_NULL) {
@@ -212,7 +218,7 @@ class MpiTransport::Impl {
     int done = 0;
     check_mpi(MPI_Test(&queue.front().request, &done, MPI_STATUS_IGNORE), "MPI_Test");
     if (done == 0) return {};
-    last_end_ = std::chrono::steady_clock::now();
+    last_move_ = std::chrono::steady_clock::now();
     Envelope envelope{Rank{static_cast<int>(source)}, std::move(queue.front().message)};
     queue.pop_front();
     --open_receives_;
@@ -230,7 +236,7 @@ class MpiTransport::Impl {
   int open_receives_ = 0;
   std::size_t next_source_ = 0;
   std::deque<Envelope> to_self_;
-  std::chrono::steady_clock::time_point last_end_;  ///< of a transfer
+  std::chrono::steady_clock::time_point last_move_;  ///< a long one began, or any ended
   std::chrono::microseconds sleep_ = kShortestSleep;
   Alarm alarm_;
 };

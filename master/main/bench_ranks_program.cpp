@@ -3,12 +3,15 @@
 // under mpirun, in every rank. What the master finds goes into the folder.
 
 #include <algorithm>
+#include <cstdlib>
 #include <string>
+#include <utility>
 
 #include "bench/error/draw.h"
 #include "bench/error/subject.h"
 #include "bench/throughput/frames.h"
 #include "bench/throughput/stream.h"
+#include "common/base/cores.h"
 #include "common/scene/resolve.h"
 #include "common/scene/scene_file.h"
 #include "common/transport/mpi_transport.h"
@@ -46,6 +49,9 @@ void run_frames_job(Cluster& cluster, const Options& options) {
 int run_frames_bench(const Options& options) { return run_cluster(options, run_frames_job); }
 
 int run_stream_bench(const Options& options) {
+  // Ranks that spin have to give way where cores are few.
+  if (std::cmp_greater(ranks_of_mpi_job(), usable_cores()))
+    setenv("OMPI_MCA_mpi_yield_when_idle", "1", 0);
   const MpiTransport transport;
   value_or_throw(Topology::for_ranks(transport.size(), options.compositors));
   const ImageSize size = options.size.value_or(bench::default_scene().image.size);

@@ -35,11 +35,23 @@ void catch_signals() {
   sigaction(SIGTERM, &action, nullptr);
 }
 
+/// Who has to see a failure waits no longer than this for ranks that do not answer.
+constexpr std::chrono::seconds kFailurePatience{2};
+
 /// How a rank's role ended.
 struct RoleEnd {
   std::optional<Failure> failure;  ///< of the job; the master tells it
   bool all_ranks_there = true;
 };
+
+/// MPI's end waits for every rank, for ever for one that was cut off.
+void call_roll(Cluster& cluster, std::chrono::milliseconds patience) {
+  try {
+    cluster.call_roll(patience);
+  } catch (const std::exception&) {
+    // A rank that speaks another language is there. What the job failed with is known already.
+  }
+}
 
 /// Whatever happens, the other ranks are told to stop.
 RoleEnd run_master(Transport& transport, Topology topology, const Options& options,
@@ -61,7 +73,7 @@ RoleEnd run_master(Transport& transport, Topology topology, const Options& optio
   } catch (const std::exception& error) {
     end.failure = {"goldthread", error.what(), "please report this", ExitStatus::kClusterFailed};
   }
-  if (!end.failure) cluster.call_roll(kSilence);
+  call_roll(cluster, end.failure ? kFailurePatience : kSilence);
   end.all_ranks_there = cluster.stop();
   return end;
 }

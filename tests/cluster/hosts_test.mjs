@@ -115,13 +115,18 @@ test('A host that is cut off after its work is missed before MPI ends, which wou
   await render.until(() => render.stderr.includes(`${picture}: 64×48`));
   await setTimeout(2000);
   hosts.cut(2);
-  assert.equal(JSON.parse(await readFile(report, 'utf8')).ranks.length, kRanks);
-  const [status] = await Promise.race([exit, render.ended.then(({ status }) => [status])]);
-  assert.equal(status, 0, render.stderr);
-  assert.deepEqual(errorLines(render), []);
-  assert.ok(readPng(picture).rgb.equals((await alone(options)).rgb));
-  hosts.restore(2);
-  assert.deepEqual(await leftOver(), []);
+  try {
+    const ended = render.ended.then(({ status }) => [status]);
+    const told = await Promise.race([readFile(report, 'utf8'), ended.then(() => Promise.reject(new Error('it ended without a report')))]);
+    assert.equal(JSON.parse(told).ranks.length, kRanks);
+    const [status] = await Promise.race([exit, ended]);
+    assert.equal(status, 0, render.stderr);
+    assert.deepEqual(errorLines(render), []);
+    assert.ok(readPng(picture).rgb.equals((await alone(options)).rgb));
+    assert.deepEqual(await leftOver(), []);
+  } finally {
+    hosts.restore(2);
+  }
 });
 
 const ways = {
@@ -135,12 +140,15 @@ const ways = {
 for (const [way, lose] of Object.entries(ways)) {
   test(`A host of workers that ${way} in the middle of a picture changes no bit of it`, async () => {
     const { render, options } = await startLong();
-    lose(2);
-    const { picture, stderr } = await render.finish();
-    for (const rank of [5, 6]) assert.match(stderr, new RegExp(`rank ${rank}, a worker, has gone silent`));
-    assert.ok(picture.rgb.equals((await alone(options)).rgb));
-    // Also those that were cut off: their daemon sees to it.
-    assert.deepEqual(await leftOver(), []);
-    hosts.restore(2);
+    try {
+      lose(2);
+      const { picture, stderr } = await render.finish();
+      for (const rank of [5, 6]) assert.match(stderr, new RegExp(`rank ${rank}, a worker, has gone silent`));
+      assert.ok(picture.rgb.equals((await alone(options)).rgb));
+      // Also those that were cut off: their daemon sees to it.
+      assert.deepEqual(await leftOver(), []);
+    } finally {
+      hosts.restore(2);
+    }
   });
 }

@@ -71,15 +71,15 @@ TEST(Simulation, OneWorkerTakesTheSumOfTilesAndMessages) {
   model.place = {13, 0.003};
   const FrameWork costs = work({4000, 3000, 2000}, 1, 1000);
   const double view = double(encode(ToWorker(BeginView{})).size());
-  const double quantum = double(encode(ToWorker(RenderTiles{{{}}})).size());
+  const double order = double(encode(ToWorker(RenderTiles{{{}, {}}})).size());
   const double samples = 1000 + double(encode(ToCompositor(Samples{})).size());
   const double done = double(encode(ToMaster(TilesDone{{{}}})).size());
   const double ready = double(encode(ToMaster(BandReady{})).size());
   const LinkCosts& link = model.link;
-  // The master queues three tiles, tells the worker the view, and sends the first tile and the spare
-  // in one message.
-  const double first = 3 * 0.5 + (11 + link.send.at(view)) + 2 * 7 + link.send.at(2 * quantum) +
-                       link.transit.at(2 * quantum) + link.receive.at(2 * quantum);
+  // The master queues three tiles, tells the worker the view, and sends the first tile and the
+  // spare in one message.
+  const double first = 3 * 0.5 + (11 + link.send.at(view)) + 2 * 7 + link.send.at(order) +
+                       link.transit.at(order) + link.receive.at(order);
   // The worker always has the next tile when it has sent the one before.
   const double computed = 9000 + 2 * (link.send.at(samples) + link.send.at(done));
   // The last tile's samples reach the compositor, whose word reaches the master.

@@ -27,7 +27,6 @@ TEST(Ranks, AreStartedWithMpirunOrAsOneProcess) {
       "worker,compositor --log-level error -o /dir ";
   EXPECT_THAT(line_of(setup), testing::HasSubstr(std::string("-n 6 ") + kCommand));
   EXPECT_THAT(line_of(setup), testing::HasSubstr("OMPI_MCA_btl=self,vader "));
-  EXPECT_THAT(line_of(setup), testing::HasSubstr("OMPI_MCA_mpi_yield_when_idle=0 "));
   setup.carrier = Carrier::kTcp;
   EXPECT_THAT(line_of(setup), testing::HasSubstr("OMPI_MCA_btl=self,tcp "));
   setup.carrier = Carrier::kThreads;
