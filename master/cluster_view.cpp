@@ -115,30 +115,29 @@ void Cluster::on(Rank from, const TilesDone& message) {
   if (scheduler_.finished()) finish_step();
 }
 
-bool Cluster::note_done(Rank from, const TileDone& message) {
+bool Cluster::note_done(Rank from, const TileDone& done) {
   const int worker = topology_.worker_index(from);
-  if (message.epoch != view_.epoch || message.tile.value >= view_.grid.count()) return false;
-  const Finished finished =
-      scheduler_.done(worker, message.tile, message.to, message.quality.squared_error);
+  if (done.epoch != view_.epoch || done.tile.value >= view_.grid.count()) return false;
+  const Finished finished = scheduler_.done(worker, done.tile, done.to, done.quality.squared_error);
   if (finished == Finished::kNot) return false;
-  ViewState::Tile& tile = view_.tiles[message.tile.value];
+  ViewState::Tile& tile = view_.tiles[done.tile.value];
   // A newcomer has cast the earlier steps again: that is not what this one costs.
-  if (message.to == Step{1} || tile.worker == from) {
+  if (done.to == Step{1} || tile.worker == from) {
     if (finished == Finished::kFirst) {
-      tile.predicted_seconds += 1e-6 * scheduler_.predicted_us(message.tile);
-      tile.compared_seconds += 1e-6 * message.cost_us;
+      tile.predicted_seconds += 1e-6 * scheduler_.predicted_us(done.tile);
+      tile.compared_seconds += 1e-6 * done.cost_us;
     }
-    costs_.record(message.tile, message.to, std::chrono::microseconds(message.cost_us));
+    costs_.record(done.tile, done.to, std::chrono::microseconds(done.cost_us));
   }
   // Rays are those of the picture, whoever cast them.
   if (finished == Finished::kFirst) {
-    view_.rays += message.rays;
-    view_.samples += message.samples;
+    view_.rays += done.rays;
+    view_.samples += done.samples;
   }
   tile.worker = from;
-  tile.seconds += 1e-6 * message.cost_us;
-  view_.worker_seconds[static_cast<std::size_t>(worker)] += 1e-6 * message.cost_us;
-  tile.quality = message.quality;
+  tile.seconds += 1e-6 * done.cost_us;
+  view_.worker_seconds[static_cast<std::size_t>(worker)] += 1e-6 * done.cost_us;
+  tile.quality = done.quality;
   ranks_[static_cast<std::size_t>(from.value)].tiles += 1;
   return true;
 }

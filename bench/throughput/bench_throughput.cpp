@@ -18,7 +18,7 @@ constexpr int kBackEndRepeats = 21, kQuickBackEndRepeats = 5;
 constexpr int kSmallTile = 16;
 /// A virtual machine's cores may be neighbours at one time and far apart at another, with six times
 /// as long for a copy.
-constexpr int kRounds = 3, kQuickRounds = 1;
+constexpr std::size_t kRounds = 3, kQuickRounds = 1;
 
 std::vector<int> sides(bool quick) {
   return quick ? std::vector{256, 1024} : std::vector{128, 256, 512, 1024, 2048};
@@ -89,9 +89,8 @@ class Measurements {
  private:
   FramesRow row(const RanksSetup& setup, bool with_stream) const {
     if (!with_stream) return {setup, starter_.frames(setup), {}, {}};
-    std::vector<FramesRow> rounds;
-    for (int i = 0; i < (settings_.quick ? kQuickRounds : kRounds); ++i)
-      rounds.push_back(round(setup));
+    std::vector<FramesRow> rounds(settings_.quick ? kQuickRounds : kRounds);
+    for (FramesRow& each : rounds) each = round(setup);
     return middle_of(std::move(rounds));
   }
   /// MPI alone before and after, so that what else the machine does strikes both alike.

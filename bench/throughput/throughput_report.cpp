@@ -3,6 +3,9 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <utility>
+
 #include "bench/error/statistics.h"
 
 namespace goldthread::bench {
@@ -140,8 +143,9 @@ FramesRow middle_of(std::vector<FramesRow> rounds) {
   std::sort(rounds.begin(), rounds.end(), [](const FramesRow& a, const FramesRow& b) {
     return a.share_of_stream() < b.share_of_stream();
   });
-  std::vector<double> shares;
-  for (const FramesRow& round : rounds) shares.push_back(round.share_of_stream().value_or(0));
+  std::vector<double> shares(rounds.size());
+  std::transform(rounds.begin(), rounds.end(), shares.begin(),
+                 [](const FramesRow& round) { return round.share_of_stream().value_or(0); });
   FramesRow middle = std::move(rounds[rounds.size() / 2]);
   middle.shares = std::move(shares);
   return middle;
