@@ -43,6 +43,12 @@ run_mpirun() {
   [[ -z $signal ]] || kill -TERM "$mpirun" 2>/dev/null
   while kill -0 "$mpirun" 2>/dev/null; do wait "$mpirun"; done
   exec {quieted}>&-
+  # The last lines; but who still holds mpirun's output, as ssh to a lost host may, is not waited for.
+  for _ in {1..20}; do
+    kill -0 "$filter" 2>/dev/null || break
+    sleep 0.05
+  done
+  kill "$filter" 2>/dev/null
   wait "$filter"
   [[ ! -s $state/status ]] || status=$(<"$state/status")
   finish "$script" "$command" "$status" "$signal"

@@ -123,10 +123,10 @@ test('A host that is cut off after its work is missed before MPI ends, which wou
     assert.equal(status, 0, render.stderr);
     assert.deepEqual(errorLines(render), []);
     assert.ok(readPng(picture).rgb.equals((await alone(options)).rgb));
-    assert.deepEqual(await leftOver(), []);
   } finally {
     hosts.restore(2);
   }
+  assert.deepEqual(await leftOver(), []);
 });
 
 const ways = {
