@@ -196,9 +196,8 @@ class BalanceBench {
       const StopRule rule{picture.sampling};
       const ViewCut cut =
           goldthread::cut_of({}, picture.size, picture.sampling, picture.update, kBalanced);
-      const int repeats = picture.size == image_
-                              ? settings_.repeats
-                              : std::min(settings_.repeats, kLargeRenderRepeats);
+      const int repeats = picture.size == image_ ? settings_.repeats
+                                                 : std::min(settings_.repeats, kLargeRenderRepeats);
       std::vector<double> measured, replayed;
       CastFrame last;
       for (int frame = 0; frame <= repeats; ++frame) {
