@@ -4,23 +4,20 @@
 #include <cstdint>
 #include <cstring>
 
+#include "common/base/lanes.h"
 #include "common/image/display.h"
 #include "common/tile/fill_holes.h"
 
 namespace goldthread {
 namespace {
 
-using Lanes = float __attribute__((vector_size(16)));
-using Mask = std::int32_t __attribute__((vector_size(16)));
-constexpr Mask kColors{-1, -1, -1, 0};
+constexpr LaneInts kColors{-1, -1, -1, 0};
 
 /// Puts a row of samples over the background.
 void over(std::span<const Sample> row, const Lanes& behind, float* pixels) {
   for (const Sample& sample : row) {
-    Lanes color;
-    std::memcpy(&color, &sample, sizeof color);
-    color = kColors ? color + (1 - sample.alpha) * behind : color;
-    std::memcpy(pixels, &color, sizeof color);
+    const Lanes color = load_lanes(&sample);
+    store_lanes(pixels, kColors ? color + (1 - sample.alpha) * behind : color);
     pixels += 4;
   }
 }

@@ -41,8 +41,7 @@ Section bypassed_section(const ThroughputReport& report) {
       "Everything by-passed (VOL2's figure 4)",
       "One worker, one ray in each pixel, tiles of 64×64. Spread: four of five frames lie between. "
       "\"MPI alone\" carries messages of the same size in the same number between the same ranks, "
-      "before and "
-      "after. Of all rounds the one with the middle share is shown.",
+      "before and after. Of all rounds the one with the middle share is shown.",
       {{"<carried by", "pixels", "frames/s", "spread", "tiles/s", "samples MB/s", "MPI alone MB/s",
         "share", "of all rounds"},
        {}}};

@@ -6,31 +6,26 @@
 #include <bit>
 #include <cstring>
 
+#include "common/base/lanes.h"
 #include "common/image/color.h"
 
 namespace goldthread {
 namespace {
 
-/// A pixel's four channels in one register of every x86-64 and ARMv8.
-using Lanes = float __attribute__((vector_size(16)));
-using Ints = std::int32_t __attribute__((vector_size(16)));
-
 /// To 0 … 1; what is not a number becomes 0.
 Lanes clamped(const float* pixel) {
   constexpr Lanes kNone{}, kAll{1, 1, 1, 1};
-  Lanes value;
-  std::memcpy(&value, pixel, sizeof value);
+  const Lanes value = load_lanes(pixel);
   const Lanes positive = value > kNone ? value : kNone;
   return positive < kAll ? positive : kAll;
 }
 
 /// As to_8_bits(), of all channels of a pixel.
 struct Rounding {
-  Ints operator()(Lanes value) const {
+  LaneInts operator()(Lanes value) const {
     const Lanes scaled = value * 255.0f;
-    const Ints below = __builtin_convertvector(scaled, Ints);
-    // Exact: adding a half before cutting off would round some values below it upwards. A
-    // comparison that holds is −1.
+    const LaneInts below = __builtin_convertvector(scaled, LaneInts);
+    // Exact: adding a half before cutting off would round some values below it upwards.
     return below - (scaled - __builtin_convertvector(below, Lanes) >= 0.5f);
   }
 };
@@ -50,7 +45,9 @@ class SrgbLevels {
     }
   }
 
-  Ints operator()(Lanes value) const { return Ints{of(value[0]), of(value[1]), of(value[2]), 0}; }
+  LaneInts operator()(Lanes value) const {
+    return LaneInts{of(value[0]), of(value[1]), of(value[2]), 0};
+  }
 
  private:
   /// Positive floats are ordered as their bits are: exponent and some of the mantissa, so much that
@@ -88,7 +85,7 @@ template <typename Levels>
 void display(const float* rgba, std::size_t count, const Levels& levels_of, std::uint8_t* rgb) {
   std::array<std::int32_t, 4 * kChunk> levels{};
   for (std::size_t i = 0; i < count; ++i) {
-    const Ints pixel = levels_of(clamped(rgba + 4 * i));
+    const LaneInts pixel = levels_of(clamped(rgba + 4 * i));
     std::memcpy(&levels[4 * i], &pixel, sizeof pixel);
   }
   std::array<std::uint8_t, 4 * kChunk> bytes;

@@ -5,31 +5,19 @@
 #include <cstddef>
 #include <cstring>
 
+#include "common/base/lanes.h"
 #include "common/tile/tile_grid.h"
 
 namespace goldthread {
 namespace {
 
-/// A sample's four numbers in one register of every x86-64 and ARMv8.
-using Lanes = float __attribute__((vector_size(16)));
-using Mask = std::int32_t __attribute__((vector_size(16)));
-
-Lanes load(const Sample* sample) {
-  Lanes lanes;
-  std::memcpy(&lanes, sample, sizeof lanes);
-  return lanes;
-}
-
-void store(Sample* place, Lanes lanes) {
-  std::memcpy(static_cast<void*>(place), &lanes, sizeof lanes);
-}
-
 /// What the place holds in the end. Without a branch: where half of the places are known, every
 /// second one would be mispredicted, which costs several times as much.
 Lanes put(Sample* place, std::uint8_t known, Lanes filling) {
   const std::int32_t all_bits = known ? -1 : 0;
-  const Lanes lanes = Mask{all_bits, all_bits, all_bits, all_bits} ? load(place) : filling;
-  store(place, lanes);
+  const Lanes lanes =
+      LaneInts{all_bits, all_bits, all_bits, all_bits} ? load_lanes(place) : filling;
+  store_lanes(place, lanes);
   return lanes;
 }
 
@@ -48,9 +36,9 @@ struct BoxRule {
 template <typename Rule>
 void fill_row(Sample* row, const std::uint8_t* known, int stride, int spacing) {
   const int half = spacing / 2;
-  Lanes left = load(row);
+  Lanes left = load_lanes(row);
   for (int x = half; x < stride; x += spacing) {
-    const Lanes right = load(row + x + half);
+    const Lanes right = load_lanes(row + x + half);
     put(row + x, known[x], Rule::edge(left, right));
     left = right;
   }
@@ -61,12 +49,12 @@ template <typename Rule>
 void fill_row_between(Sample* row, const std::uint8_t* known, const Sample* above,
                       const Sample* below, int stride, int spacing) {
   const int half = spacing / 2;
-  Lanes left = put(row, known[0], Rule::edge(load(above), load(below)));
+  Lanes left = put(row, known[0], Rule::edge(load_lanes(above), load_lanes(below)));
   for (int x = half; x < stride; x += spacing) {
     const int next = x + half;
-    const Lanes right =
-        put(row + next, known[next], Rule::edge(load(above + next), load(below + next)));
-    put(row + x, known[x], Rule::centre(left, right, load(above + x), load(below + x)));
+    const Lanes right = put(row + next, known[next],
+                            Rule::edge(load_lanes(above + next), load_lanes(below + next)));
+    put(row + x, known[x], Rule::centre(left, right, load_lanes(above + x), load_lanes(below + x)));
     left = right;
   }
 }
@@ -94,12 +82,13 @@ struct CubicLine {
   bool more_after;
 
   Lanes at(const Sample* place) const {
-    const Lanes a = load(place - half), b = load(place + half);
+    const Lanes a = load_lanes(place - half), b = load_lanes(place + half);
     if (more_before && more_after) {
-      return ((a + b) * 9.0f - (load(place - 3 * half) + load(place + 3 * half))) * 0.0625f;
+      return ((a + b) * 9.0f - (load_lanes(place - 3 * half) + load_lanes(place + 3 * half))) *
+             0.0625f;
     }
-    if (more_before) return (a * 6.0f + b * 3.0f - load(place - 3 * half)) * 0.125f;
-    if (more_after) return (b * 6.0f + a * 3.0f - load(place + 3 * half)) * 0.125f;
+    if (more_before) return (a * 6.0f + b * 3.0f - load_lanes(place - 3 * half)) * 0.125f;
+    if (more_after) return (b * 6.0f + a * 3.0f - load_lanes(place + 3 * half)) * 0.125f;
     return (a + b) * 0.5f;
   }
 };
@@ -136,7 +125,7 @@ class CubicFill {
       Sample* row = plane_.samples.data() + std::ptrdiff_t(y) * plane_.stride;
       const std::uint8_t* known = plane_.known.data() + std::ptrdiff_t(y) * plane_.stride;
       for (int x = first_x; x < plane_.stride; x += spacing_) {
-        if (!known[x]) store(row + x, within_range(rule(row + x, x, y)));
+        if (!known[x]) store_lanes(row + x, within_range(rule(row + x, x, y)));
       }
     }
   }

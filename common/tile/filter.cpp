@@ -4,14 +4,12 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
-#include <cstring>
 #include <utility>
+
+#include "common/base/lanes.h"
 
 namespace goldthread {
 namespace {
-
-/// A pixel's four numbers in one register of every x86-64 and ARMv8.
-using Lanes = float __attribute__((vector_size(16)));
 
 double box(double t) { return -0.5 <= t && t < 0.5 ? 1 : 0; }
 
@@ -110,11 +108,10 @@ void filter_row(const float* source, const Taps& taps, float* target) {
   for (const Taps::Range& range : taps.ranges) {
     Lanes sum{};
     for (int i = 0; i < range.count; ++i) {
-      Lanes pixel;
-      std::memcpy(&pixel, source + 4 * (range.first + i), sizeof pixel);
+      const Lanes pixel = load_lanes(source + 4 * (range.first + i));
       sum += pixel * taps.weights[range.weight + static_cast<std::size_t>(i)];
     }
-    std::memcpy(target, &sum, sizeof sum);
+    store_lanes(target, sum);
     target += 4;
   }
 }
